@@ -1,0 +1,96 @@
+//! The design points and what the model answered there.
+
+use super::BuildError;
+use crate::design::{ModeCount, NestedLatinHypercube, RunError, Samples, direct_computation};
+use crate::model::Model;
+use crate::progress::Observer;
+use crate::spectrum::{Output, Spectrum};
+use crate::study::Study;
+use rayon::prelude::*;
+
+/// A growing design with one spectrum per point. No point is run twice.
+pub(super) struct Evaluations<'a> {
+    study: &'a Study,
+    design: NestedLatinHypercube,
+    spectra: Vec<Spectrum>,
+    modes: Vec<usize>,
+    mode_count: ModeCount,
+}
+
+impl<'a> Evaluations<'a> {
+    pub fn new(study: &'a Study) -> Self {
+        Self {
+            study,
+            design: NestedLatinHypercube::new(study.inputs.dimension(), study.seed),
+            spectra: Vec::new(),
+            modes: Vec::new(),
+            mode_count: ModeCount::default(),
+        }
+    }
+
+    /// Grows the design and runs the model at its new points, in parallel.
+    pub fn grow_to(&mut self, size: usize, model: &dyn Model, observer: &dyn Observer) -> Result<(), BuildError> {
+        let inputs = &self.study.inputs;
+        let old = self.design.len();
+        self.design.grow_to(size);
+        let samples = self.samples();
+        observer.begin("model runs", (size - old) as u64);
+        let runs: Result<Vec<(Vec<f64>, Spectrum)>, BuildError> = (old..size)
+            .into_par_iter()
+            .map(|i| {
+                if observer.interrupted() {
+                    return Err(BuildError::Interrupted);
+                }
+                let physical = inputs.physical(samples.point(i));
+                let spectrum = direct_computation(model, inputs, &physical)?;
+                observer.advance(1);
+                Ok((physical, spectrum))
+            })
+            .collect();
+        observer.finish();
+        for (physical, spectrum) in runs? {
+            let count = self.mode_count.check(inputs, &physical, &spectrum)?;
+            self.modes = self
+                .study
+                .spectrum
+                .modes
+                .ranks(count)
+                .map_err(|source| RunError::Spectrum { point: inputs.describe(&physical), source })?;
+            self.spectra.push(spectrum);
+        }
+        Ok(())
+    }
+
+    /// The points in standardized coordinates.
+    pub fn samples(&self) -> Samples {
+        let inputs = self.study.inputs.inputs();
+        self.design.samples(|j, unit| inputs[j].marginal.standardized_quantile(unit))
+    }
+
+    /// The spectra, point by point.
+    pub fn spectra(&self) -> &[Spectrum] {
+        &self.spectra
+    }
+
+    /// What the study's components form.
+    pub fn outputs(&self) -> Vec<Output> {
+        self.study.spectrum.target.outputs(&self.modes)
+    }
+
+    /// The values of each component, by id: one value per point.
+    pub fn components(&self) -> Result<Vec<Vec<f64>>, RunError> {
+        let target = self.study.spectrum.target;
+        let mut components = Vec::new();
+        for (spectrum, point) in self.spectra.iter().zip(self.samples().points()) {
+            let values = target.components(&self.modes, spectrum).map_err(|source| {
+                let physical = self.study.inputs.physical(point);
+                RunError::Spectrum { point: self.study.inputs.describe(&physical), source }
+            })?;
+            components.resize_with(values.len(), Vec::new);
+            for (component, value) in components.iter_mut().zip(values) {
+                component.push(value);
+            }
+        }
+        Ok(components)
+    }
+}

@@ -1,0 +1,9 @@
+//! Experimental designs: where the model is run, and what it answered.
+
+mod latin_hypercube;
+mod run;
+mod samples;
+
+pub use latin_hypercube::NestedLatinHypercube;
+pub use run::{ModeCount, RunError, direct_computation};
+pub use samples::Samples;

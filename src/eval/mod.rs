@@ -1,0 +1,11 @@
+//! The evaluator: a surrogate, compiled into a plan, at millions of points.
+//!
+//! Nothing here knows a model, a design or a fit: what is deployed carries no model code.
+
+mod monte_carlo;
+mod plan;
+mod points;
+
+pub use monte_carlo::{EvalError, monte_carlo};
+pub use plan::{LANES, Plan, Workspace};
+pub use points::evaluate_points;

@@ -1,0 +1,91 @@
+//! Streaming Monte Carlo on a surrogate.
+//!
+//! Samples are numbered; sample i is the same whoever computes it. Fixed chunks of samples are summarised on all cores
+//! and merged in the order of their numbers, so counts and moments do not depend on the number of threads, and memory not on
+//! the number of samples.
+
+use super::plan::{LANES, Plan};
+use super::points::Evaluator;
+use crate::input::random_point;
+use crate::progress::Observer;
+use crate::random::Purpose;
+use crate::spectrum::{Block, Summary};
+use crate::surrogate::Surrogate;
+use rayon::prelude::*;
+use std::ops::Range;
+use thiserror::Error;
+
+/// Samples summarised together, a multiple of [`LANES`]: part of the result's definition, since it fixes the order of sums.
+const CHUNK: u64 = 4096;
+
+/// Chunks whose summaries are held in memory before they are merged.
+const CHUNKS_IN_FLIGHT: u64 = 1024;
+
+/// Why an evaluation gave no result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum EvalError {
+    /// Nothing to evaluate.
+    #[error("no samples were asked for; use at least 1")]
+    NoSamples,
+    /// The user asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Statistics of samples 0 … `samples` − 1 under `seed`, on the current rayon thread pool.
+///
+/// # Errors
+///
+/// [`EvalError::NoSamples`] and [`EvalError::Interrupted`].
+pub fn monte_carlo(
+    surrogate: &Surrogate,
+    samples: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<Summary, EvalError> {
+    if samples == 0 {
+        return Err(EvalError::NoSamples);
+    }
+    let plan = Plan::new(surrogate);
+    let mut summary = Summary::new(surrogate.expansions.len(), surrogate.modes().len());
+    observer.begin("samples", samples);
+    let chunks = samples.div_ceil(CHUNK);
+    let mut first = 0;
+    while first < chunks {
+        let end = chunks.min(first + CHUNKS_IN_FLIGHT);
+        let parts: Vec<Summary> = (first..end)
+            .into_par_iter()
+            .map_init(
+                || Evaluator::new(surrogate, &plan),
+                |evaluator, chunk| {
+                    if observer.interrupted() {
+                        return Summary::new(0, 0);
+                    }
+                    let range = chunk * CHUNK..samples.min((chunk + 1) * CHUNK);
+                    observer.advance(range.end - range.start);
+                    Summary::of(&evaluate_chunk(surrogate, evaluator, seed, range))
+                },
+            )
+            .collect();
+        if observer.interrupted() {
+            observer.finish();
+            return Err(EvalError::Interrupted);
+        }
+        parts.iter().for_each(|part| summary.merge(part));
+        first = end;
+    }
+    observer.finish();
+    Ok(summary)
+}
+
+fn evaluate_chunk(surrogate: &Surrogate, evaluator: &mut Evaluator<'_>, seed: u64, range: Range<u64>) -> Block {
+    let mut block = evaluator.block(CHUNK as usize);
+    for start in range.clone().step_by(LANES) {
+        let lanes = LANES.min((range.end - start) as usize);
+        let set_point = |lane, point: &mut [f64]| {
+            random_point(&surrogate.inputs, seed, Purpose::Evaluation, start + lane as u64, point);
+        };
+        evaluator.evaluate(lanes, set_point, &mut block);
+    }
+    block
+}

@@ -1,0 +1,204 @@
+//! The 6-degree-of-freedom clutch of Wickramarachi, Singh and Bailey (2005) with internal damping, section 4 of the paper.
+//!
+//! A pressure plate, modelled as four masses M_p/4 on bending springs k_f, rotates by θ_x and θ_y and is pressed on the
+//! flywheel by four cushion springs k_A … k_D; friction μ at their contacts couples the two rotations.
+//!
+//! Two things differ from the printed paper. Entry (1, 2) of K and C is +μ l r (k_C + k_D): with the printed minus the
+//! rigid rotation (0, 1, 0, 0, −r, r) is not in the null space of K, a real eigenvalue appears and no modes coalesce. And
+//! M_p, I_x, I_y, which are not printed, are those that reproduce its table 2: 40 kg and 0.030 kg·m².
+
+use super::second_order::state_matrix;
+use super::{Model, ModelError, Parameter, Range};
+use crate::numerics::eigenvalues::eigenvalues;
+use nalgebra::{Complex, DMatrix, Matrix6, Vector6};
+
+const fn parameter(
+    name: &'static str,
+    unit: &'static str,
+    nominal: f64,
+    range: Range,
+    meaning: &'static str,
+) -> Parameter {
+    Parameter { name, unit, nominal, range, meaning }
+}
+
+/// Every parameter of the clutch with its nominal value. The first eight are those the paper treats as uncertain, in its order.
+pub const CLUTCH_PARAMETERS: [Parameter; 16] = [
+    parameter("mu", "", 0.25, Range::NonNegative, "friction coefficient"),
+    parameter("k_p", "N/m", 16e6, Range::NonNegative, "cushion stiffness"),
+    parameter("k_f", "N/m", 7e6, Range::NonNegative, "bending stiffness of the pressure plate"),
+    parameter("gamma_1", "", 0.9, Range::Positive, "stiffness ratio of the first nodal diameter"),
+    parameter("gamma_2", "", 0.8, Range::Positive, "stiffness ratio of the second nodal diameter"),
+    parameter("r_1", "m", 0.075, Range::NonNegative, "inner sliding radius"),
+    parameter("r_2", "m", 0.12, Range::NonNegative, "outer sliding radius"),
+    parameter("l", "m", 0.0125, Range::NonNegative, "thickness of the pressure plate"),
+    parameter("plate_mass", "kg", 40.0, Range::Positive, "mass of the pressure plate, M_p"),
+    parameter("plate_inertia_x", "kg·m²", 0.030, Range::Positive, "moment of inertia about x"),
+    parameter("plate_inertia_y", "kg·m²", 0.030, Range::Positive, "moment of inertia about y"),
+    parameter("c_A", "N·s/m", 4.0, Range::NonNegative, "damping at A"),
+    parameter("c_B", "N·s/m", 4.0, Range::NonNegative, "damping at B"),
+    parameter("c_C", "N·s/m", 4.0, Range::NonNegative, "damping at C"),
+    parameter("c_D", "N·s/m", 4.0, Range::NonNegative, "damping at D"),
+    parameter("c_f", "N·s/m", 0.1, Range::NonNegative, "bending damping of the pressure plate"),
+];
+
+/// The clutch with some of its parameters uncertain.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::model::{Clutch, Model};
+/// let clutch = Clutch::new(&[], &["mu"])?;
+/// let largest = |mu| clutch.eigenvalues(&[mu]).map(|all| all.iter().map(|l| l.re).fold(f64::MIN, f64::max));
+/// assert!(largest(0.4)? > 1.0); // squeals
+/// # Ok::<(), pcc::model::ModelError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clutch {
+    /// Values of [`CLUTCH_PARAMETERS`], in its order.
+    values: [f64; 16],
+    /// For each uncertain input, its position in `values`.
+    uncertain: Vec<usize>,
+}
+
+impl Clutch {
+    /// The clutch with `constants` in place of nominal values and the parameters named `uncertain` left open, in the
+    /// order in which [`Model::eigenvalues`] takes them.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError::UnknownParameter`].
+    pub fn new(constants: &[(&str, f64)], uncertain: &[&str]) -> Result<Self, ModelError> {
+        let mut values = CLUTCH_PARAMETERS.map(|parameter| parameter.nominal);
+        for &(name, value) in constants {
+            values[position(name)?] = value;
+        }
+        let uncertain = uncertain.iter().map(|name| position(name)).collect::<Result<_, _>>()?;
+        Ok(Self { values, uncertain })
+    }
+
+    fn matrices(&self, point: &[f64]) -> Matrices {
+        let mut values = self.values;
+        for (&parameter, &value) in self.uncertain.iter().zip(point) {
+            values[parameter] = value;
+        }
+        let [mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, plate_mass, inertia_x, inertia_y, c_a, c_b, c_c, c_d, c_f] =
+            values;
+        let quarter = plate_mass / 4.0;
+        let geometry = Geometry { mu, r: (r_1 + r_2) / 2.0, l };
+        let springs = [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)];
+        Matrices {
+            mass_diagonal: Vector6::new(inertia_x, inertia_y, quarter, quarter, quarter, quarter),
+            damping: geometry.assemble([c_a, c_b, c_c, c_d], c_f),
+            stiffness: geometry.assemble(springs, k_f),
+        }
+    }
+
+    /// The 12 × 12 state matrix at `point`, in 1/s and 1/s².
+    pub fn state_matrix(&self, point: &[f64]) -> DMatrix<f64> {
+        let Matrices { mass_diagonal, damping, stiffness } = self.matrices(point);
+        state_matrix(&mass_diagonal, &damping, &stiffness)
+    }
+}
+
+impl Model for Clutch {
+    fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+        Ok(eigenvalues(self.state_matrix(point))?)
+    }
+}
+
+fn position(name: &str) -> Result<usize, ModelError> {
+    CLUTCH_PARAMETERS.iter().position(|parameter| parameter.name == name).ok_or_else(|| ModelError::UnknownParameter {
+        name: name.to_owned(),
+        known: CLUTCH_PARAMETERS.map(|parameter| parameter.name).join(", "),
+    })
+}
+
+/// M, C and K of M Ü + C U̇ + K U = 0 for U = (θ_x, θ_y, Z_A, Z_B, Z_C, Z_D).
+struct Matrices {
+    mass_diagonal: Vector6<f64>,
+    damping: Matrix6<f64>,
+    stiffness: Matrix6<f64>,
+}
+
+/// What K and C share: friction coefficient, mean radius r = (r_1 + r_2)/2 in m, thickness l in m.
+struct Geometry {
+    mu: f64,
+    r: f64,
+    l: f64,
+}
+
+impl Geometry {
+    /// K of equation 28 from the springs at A … D and f, or C of equation 29 from the dampers.
+    #[rustfmt::skip]
+    fn assemble(&self, [a, b, c, d]: [f64; 4], f: f64) -> Matrix6<f64> {
+        let Self { mu, r, l } = *self;
+        Matrix6::new(
+            r*r*(a + b + 4.0*f), mu*l*r*(c + d),      r*(a + 2.0*f), -r*(b + 2.0*f), mu*l*c,        -mu*l*d,
+            -mu*l*r*(a + b),     r*r*(c + d + 4.0*f), -mu*l*a,       mu*l*b,         r*(c + 2.0*f), -r*(d + 2.0*f),
+            r*(a + 2.0*f),       0.0,                 a + 2.0*f,     0.0,            -f,            -f,
+            -r*(b + 2.0*f),      0.0,                 0.0,           b + 2.0*f,      -f,            -f,
+            0.0,                 r*(c + 2.0*f),       -f,            -f,             c + 2.0*f,     0.0,
+            0.0,                 -r*(d + 2.0*f),      -f,            -f,             0.0,           d + 2.0*f,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MU_ONLY: [&str; 1] = ["mu"];
+
+    /// Rank by singular values: those of the null space are rounding, the others are stiffnesses.
+    fn rank(matrix: &Matrix6<f64>) -> usize {
+        let singular = matrix.singular_values();
+        singular.iter().filter(|&&value| value > 1e-10 * singular.max()).count()
+    }
+
+    #[test]
+    fn stiffness_has_rank_four_for_every_friction_coefficient() {
+        let clutch = Clutch::new(&[], &MU_ONLY).unwrap();
+        for mu in [0.0, 0.1, 0.25, 0.5] {
+            assert_eq!(rank(&clutch.matrices(&[mu]).stiffness), 4);
+        }
+    }
+
+    #[test]
+    fn the_printed_sign_breaks_the_rigid_rotation_and_diverges() {
+        let clutch = Clutch::new(&[], &MU_ONLY).unwrap();
+        let mut matrices = clutch.matrices(&[0.25]);
+        let r = 0.0975;
+        let rotation = Vector6::new(0.0, 1.0, 0.0, 0.0, -r, r);
+        assert!((matrices.stiffness * rotation).norm() < 1e-9 * matrices.stiffness.norm());
+
+        matrices.stiffness[(0, 1)] *= -1.0;
+        matrices.damping[(0, 1)] *= -1.0;
+        assert_eq!(rank(&matrices.stiffness), 5);
+        let all = eigenvalues(state_matrix(&matrices.mass_diagonal, &matrices.damping, &matrices.stiffness)).unwrap();
+        let divergent = all.iter().filter(|l| l.im == 0.0).map(|l| l.re).fold(f64::MIN, f64::max);
+        assert!((divergent - 11.8).abs() < 0.1, "real eigenvalue {divergent}");
+    }
+
+    #[test]
+    fn stability_depends_on_ratios_of_mass_inertia_and_damping_only() {
+        let scale = 3.0_f64;
+        let heavy = ["plate_mass", "plate_inertia_x", "plate_inertia_y"].map(|name| (name, scale));
+        let damped = ["c_A", "c_B", "c_C", "c_D", "c_f"].map(|name| (name, scale.sqrt()));
+        let constants: Vec<(&str, f64)> = heavy
+            .into_iter()
+            .chain(damped)
+            .map(|(name, factor)| (name, CLUTCH_PARAMETERS[position(name).unwrap()].nominal * factor))
+            .collect();
+        let (plain, scaled) = (Clutch::new(&[], &MU_ONLY).unwrap(), Clutch::new(&constants, &MU_ONLY).unwrap());
+        let largest =
+            |clutch: &Clutch| clutch.eigenvalues(&[0.3]).unwrap().iter().map(|l| l.re).fold(f64::MIN, f64::max);
+        assert!((largest(&scaled) * scale.sqrt() - largest(&plain)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn unknown_parameters_are_named() {
+        let error = Clutch::new(&[("k_q", 1.0)], &[]).unwrap_err();
+        assert!(error.to_string().starts_with("the model has no parameter k_q; it has mu, k_p"));
+    }
+}

@@ -1,0 +1,41 @@
+//! Models: from parameters to the eigenvalues of a linearised system.
+
+mod clutch;
+mod parameter;
+mod second_order;
+
+pub use clutch::{CLUTCH_PARAMETERS, Clutch};
+pub use parameter::{Parameter, Range};
+
+use crate::numerics::eigenvalues::EigenvalueError;
+use nalgebra::Complex;
+use thiserror::Error;
+
+/// Why a model could not be set up or run.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ModelError {
+    /// The model has no parameter of this name.
+    #[error("the model has no parameter {name}; it has {known}")]
+    UnknownParameter {
+        /// The name asked for.
+        name: String,
+        /// The names that exist.
+        known: String,
+    },
+    /// The eigenvalue solver failed.
+    #[error(transparent)]
+    Eigenvalues(#[from] EigenvalueError),
+}
+
+/// A system whose eigenvalues depend on parameters.
+///
+/// One call of [`Model::eigenvalues`] is one direct computation. Calls come from several threads at once.
+pub trait Model: Sync {
+    /// All eigenvalues λ of the state matrix, in 1/s, at `point`: one value per uncertain input, in the order of the
+    /// study's inputs and in physical units.
+    ///
+    /// # Errors
+    ///
+    /// A run that fails says why. It is never replaced by a guess.
+    fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError>;
+}

@@ -1,0 +1,5 @@
+//! Univariate polynomials that are orthonormal under a probability density.
+
+mod recurrence;
+
+pub use recurrence::{Family, Recurrence};

@@ -1,0 +1,127 @@
+//! A surrogate against its model on the same points.
+
+use super::monte_carlo::{ReferenceError, for_each_chunk};
+use crate::eval::{Plan, evaluate_points};
+use crate::progress::Observer;
+use crate::statistics::{Moments, Proportion};
+use crate::study::Study;
+use crate::surrogate::Surrogate;
+
+/// Errors of one component, relative to the model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentError {
+    /// Name of the component.
+    pub name: String,
+    /// Moments from the model.
+    pub model: Moments,
+    /// Moments from the surrogate.
+    pub surrogate: Moments,
+}
+
+impl ComponentError {
+    /// 100 |difference of the means|/|mean of the model|.
+    pub fn mean_error_percent(&self) -> f64 {
+        relative_error_percent(self.surrogate.mean(), self.model.mean())
+    }
+
+    /// 100 |difference of the variances|/variance of the model.
+    pub fn variance_error_percent(&self) -> f64 {
+        relative_error_percent(self.surrogate.variance(), self.model.variance())
+    }
+}
+
+/// Model and surrogate on the same points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Number of points.
+    pub samples: u64,
+    /// Points at which the model is stable.
+    pub stable_model: u64,
+    /// Points at which the surrogate is stable.
+    pub stable_surrogate: u64,
+    /// Points that the surrogate calls stable and the model unstable.
+    pub falsely_stable: u64,
+    /// Points that the surrogate calls unstable and the model stable.
+    pub falsely_unstable: u64,
+    /// Every component by id.
+    pub components: Vec<ComponentError>,
+}
+
+impl Comparison {
+    /// The model's share of stable points.
+    pub fn proportion_model(&self) -> f64 {
+        Proportion { hits: self.stable_model, samples: self.samples }.value()
+    }
+
+    /// The surrogate's share of stable points.
+    pub fn proportion_surrogate(&self) -> f64 {
+        Proportion { hits: self.stable_surrogate, samples: self.samples }.value()
+    }
+
+    /// 100 |difference of the proportions|/proportion of the model.
+    pub fn relative_error_percent(&self) -> f64 {
+        relative_error_percent(self.stable_surrogate as f64, self.stable_model as f64)
+    }
+
+    /// Share of points on whose stability the two disagree, in percent.
+    pub fn misclassified_percent(&self) -> f64 {
+        100.0 * (self.falsely_stable + self.falsely_unstable) as f64 / self.samples as f64
+    }
+}
+
+/// 100 |found − truth|/|truth|; 0 if both are equal, infinite if only the truth is zero.
+fn relative_error_percent(found: f64, truth: f64) -> f64 {
+    if found == truth { 0.0 } else { 100.0 * ((found - truth) / truth).abs() }
+}
+
+/// Evaluates `surrogate` and the model of `study` at samples 0 … `samples` − 1 under `seed`.
+///
+/// # Errors
+///
+/// [`ReferenceError::OtherProblem`] if the surrogate was built for another problem, else as
+/// [`super::monte_carlo`].
+pub fn compare(
+    surrogate: &Surrogate,
+    study: &Study,
+    samples: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<Comparison, ReferenceError> {
+    let (of_surrogate, of_study) = (&surrogate.provenance.problem_hash, study.problem_hash());
+    if *of_surrogate != of_study {
+        return Err(ReferenceError::OtherProblem { surrogate: of_surrogate.clone(), study: of_study });
+    }
+    let plan = Plan::new(surrogate);
+    let mut comparison = Comparison {
+        samples,
+        stable_model: 0,
+        stable_surrogate: 0,
+        falsely_stable: 0,
+        falsely_unstable: 0,
+        components: surrogate
+            .components()
+            .iter()
+            .map(|component| ComponentError {
+                name: component.name.clone(),
+                model: Moments::default(),
+                surrogate: Moments::default(),
+            })
+            .collect(),
+    };
+    for_each_chunk(study, samples, seed, observer, |runs| {
+        let points: Vec<&[f64]> = runs.iter().map(|run| run.standardized.as_slice()).collect();
+        let block = evaluate_points(surrogate, &plan, &points);
+        for (run, &max_re) in runs.iter().zip(&block.max_re) {
+            let (model, found) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
+            comparison.stable_model += u64::from(model);
+            comparison.stable_surrogate += u64::from(found);
+            comparison.falsely_stable += u64::from(found && !model);
+            comparison.falsely_unstable += u64::from(model && !found);
+        }
+        for (id, component) in comparison.components.iter_mut().enumerate() {
+            component.surrogate.merge(&Moments::of(&block.components[id]));
+            component.model.merge(&runs.iter().map(|run| run.components[id]).collect());
+        }
+    })?;
+    Ok(comparison)
+}

@@ -1,0 +1,11 @@
+//! Spectra: which eigenvalues are modes, in which order, and how components become eigenvalues again.
+
+mod modes;
+mod recombination;
+mod summary;
+mod target;
+
+pub use modes::{Spectrum, SpectrumError};
+pub use recombination::{Component, Output, OutputKind};
+pub use summary::{Block, ModeSummary, Summary};
+pub use target::{Modes, Target};

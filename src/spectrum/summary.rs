@@ -1,0 +1,120 @@
+//! What many samples of a spectrum say: stability, and per mode what engineers read.
+
+use crate::statistics::{Moments, Proportion};
+use nalgebra::Complex;
+
+/// Statistics of one mode.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ModeSummary {
+    /// Growth rate Re λ, in 1/s.
+    pub growth_rate: Moments,
+    /// Angular frequency Im λ, in rad/s.
+    pub angular_frequency: Moments,
+    /// Damping ratio −Re λ/|λ|.
+    pub damping_ratio: Moments,
+    /// Samples in which this mode is unstable, Re λ ≥ 0.
+    pub unstable: u64,
+}
+
+/// Statistics of many samples. Parts merge in a fixed order to the same bits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Samples with max Re λ < 0.
+    pub stable: u64,
+    /// Spectral abscissa max Re λ, in 1/s.
+    pub max_re: Moments,
+    /// Every component by id.
+    pub components: Vec<Moments>,
+    /// Every mode.
+    pub modes: Vec<ModeSummary>,
+}
+
+impl Summary {
+    /// No samples yet, of so many components and modes.
+    pub fn new(components: usize, modes: usize) -> Self {
+        Self {
+            stable: 0,
+            max_re: Moments::default(),
+            components: vec![Moments::default(); components],
+            modes: vec![ModeSummary::default(); modes],
+        }
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> u64 {
+        self.max_re.count()
+    }
+
+    /// The share of stable samples.
+    pub fn stable_proportion(&self) -> Proportion {
+        Proportion { hits: self.stable, samples: self.samples() }
+    }
+
+    /// The statistics of one block of samples.
+    pub fn of(block: &Block) -> Self {
+        let modes = block.eigenvalues.iter().map(|lambdas| {
+            let part = |part: fn(&Complex<f64>) -> f64| Moments::of(&lambdas.iter().map(part).collect::<Vec<_>>());
+            ModeSummary {
+                growth_rate: part(|lambda| lambda.re),
+                angular_frequency: part(|lambda| lambda.im),
+                damping_ratio: part(|lambda| -lambda.re / (lambda.re * lambda.re + lambda.im * lambda.im).sqrt()),
+                unstable: lambdas.iter().filter(|lambda| lambda.re >= 0.0).count() as u64,
+            }
+        });
+        Self {
+            stable: block.max_re.iter().filter(|&&max_re| max_re < 0.0).count() as u64,
+            max_re: Moments::of(&block.max_re),
+            components: block.components.iter().map(|values| Moments::of(values)).collect(),
+            modes: modes.collect(),
+        }
+    }
+
+    /// Adds the samples of `other`, which has as many components and modes.
+    pub fn merge(&mut self, other: &Self) {
+        self.stable += other.stable;
+        self.max_re.merge(&other.max_re);
+        for (own, added) in self.components.iter_mut().zip(&other.components) {
+            own.merge(added);
+        }
+        for (own, added) in self.modes.iter_mut().zip(&other.modes) {
+            own.growth_rate.merge(&added.growth_rate);
+            own.angular_frequency.merge(&added.angular_frequency);
+            own.damping_ratio.merge(&added.damping_ratio);
+            own.unstable += added.unstable;
+        }
+    }
+}
+
+/// Samples side by side: one list per quantity.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Block {
+    /// Values of every component by id.
+    pub components: Vec<Vec<f64>>,
+    /// Eigenvalues of every mode, in 1/s.
+    pub eigenvalues: Vec<Vec<Complex<f64>>>,
+    /// max Re λ, in 1/s.
+    pub max_re: Vec<f64>,
+}
+
+impl Block {
+    /// An empty block with room for `samples` samples.
+    pub fn with_capacity(components: usize, modes: usize, samples: usize) -> Self {
+        Self {
+            components: (0..components).map(|_| Vec::with_capacity(samples)).collect(),
+            eigenvalues: (0..modes).map(|_| Vec::with_capacity(samples)).collect(),
+            max_re: Vec::with_capacity(samples),
+        }
+    }
+
+    /// Adds one sample.
+    #[inline]
+    pub fn push(&mut self, components: &[f64], eigenvalues: &[Complex<f64>], max_re: f64) {
+        for (list, &value) in self.components.iter_mut().zip(components) {
+            list.push(value);
+        }
+        for (list, &lambda) in self.eigenvalues.iter_mut().zip(eigenvalues) {
+            list.push(lambda);
+        }
+        self.max_re.push(max_re);
+    }
+}

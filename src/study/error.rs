@@ -1,0 +1,93 @@
+//! What can be wrong with a study file.
+
+use crate::input::{InputError, MarginalError};
+use thiserror::Error;
+
+/// A key of the study and its line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// Dotted key, as in `inputs.k_p.lower`.
+    pub key: String,
+    /// Line in the file, from 1.
+    pub line: usize,
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "line {}: {}", self.line, self.key)
+    }
+}
+
+/// Why a study cannot be used.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum StudyError {
+    /// Not TOML, an unknown or missing key, or a value of the wrong type. The text shows the place.
+    #[error("{0}")]
+    Syntax(String),
+    /// The file is of another format.
+    #[error("{place}: is {found}, but this pcc reads format {known}; update pcc or the study")]
+    Format {
+        /// Where.
+        place: Place,
+        /// Format found.
+        found: i64,
+        /// Format this version reads.
+        known: u32,
+    },
+    /// A value is out of range.
+    #[error("{place}: is {found}, but must be {expected}")]
+    OutOfRange {
+        /// Where.
+        place: Place,
+        /// Value found.
+        found: String,
+        /// What it must be.
+        expected: String,
+    },
+    /// A word that is not among the known ones.
+    #[error("{place}: \"{found}\" is not known; choose {expected}")]
+    UnknownWord {
+        /// Where.
+        place: Place,
+        /// Word found.
+        found: String,
+        /// Words that are known.
+        expected: String,
+    },
+    /// An input or constant the model does not have.
+    #[error("{place}: the model has no such parameter; it has {known}")]
+    UnknownParameter {
+        /// Where.
+        place: Place,
+        /// Parameters of the model.
+        known: String,
+    },
+    /// A parameter is both a constant and an input.
+    #[error("{place}: is also an uncertain input; remove one of the two")]
+    ConstantAndInput {
+        /// Where.
+        place: Place,
+    },
+    /// A distribution's parameters are unusable.
+    #[error("{place}: {source}")]
+    Distribution {
+        /// Where.
+        place: Place,
+        /// Why.
+        source: MarginalError,
+    },
+    /// The distribution is given in neither or both of its two forms.
+    #[error("{place}: give either lower and upper, or nominal and spread")]
+    DistributionForm {
+        /// Where.
+        place: Place,
+    },
+    /// The inputs do not form a space.
+    #[error("{place}: {source}")]
+    Inputs {
+        /// Where.
+        place: Place,
+        /// Why.
+        source: InputError,
+    },
+}

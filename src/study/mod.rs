@@ -1,0 +1,95 @@
+//! Studies: what to build a surrogate of, and how. A TOML file becomes a validated problem.
+
+mod defaults;
+mod error;
+mod identity;
+mod print;
+mod raw;
+mod settings;
+mod validate;
+
+pub use error::{Place, StudyError};
+pub use settings::{DesignKind, DesignSettings, FitMethod, ModelSettings, SpectrumSettings, Stepwise};
+
+use crate::input::InputSpace;
+use crate::model::{Clutch, Model, ModelError};
+
+/// The format of study files this version reads.
+pub const STUDY_FORMAT: u32 = 1;
+
+/// A validated study: every value is present and in range.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::study::Study;
+/// let study = Study::from_toml(
+///     r#"
+///     format = 1
+///     name = "friction-only"
+///     [model]
+///     kind = "clutch"
+///     [inputs]
+///     mu = { distribution = "uniform", lower = 0.0, upper = 0.5 }
+///     "#,
+/// )?;
+/// assert_eq!(study.fit.max_degree, 15);
+/// assert_eq!(Study::from_toml(&study.to_toml())?, study);
+/// # Ok::<(), pcc::study::StudyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Name of the study and of the files built from it.
+    pub name: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// The model and its constants.
+    pub model: ModelSettings,
+    /// The uncertain inputs.
+    pub inputs: InputSpace,
+    /// What of the spectrum is expanded.
+    pub spectrum: SpectrumSettings,
+    /// Where the model is run.
+    pub design: DesignSettings,
+    /// How expansions are fitted.
+    pub fit: Stepwise,
+}
+
+impl Study {
+    /// Reads a study.
+    ///
+    /// # Errors
+    ///
+    /// [`StudyError`] names the key and the line, what was found and what to do.
+    pub fn from_toml(text: &str) -> Result<Self, StudyError> {
+        validate::study(raw::parse(text)?, text)
+    }
+
+    /// The study as a file with every default filled in and every key explained.
+    pub fn to_toml(&self) -> String {
+        print::study(self)
+    }
+
+    /// The model, ready to run at points of the input space.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError`] if constants or inputs do not fit the model; a study read from a file was checked for that.
+    pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
+        let ModelSettings::Clutch { constants } = &self.model;
+        let constants: Vec<(&str, f64)> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let uncertain: Vec<&str> = self.inputs.names().collect();
+        Ok(Box::new(Clutch::new(&constants, &uncertain)?))
+    }
+
+    /// Hash of what is asked: model, constants, inputs and spectrum. Two studies with the same hash have the same true
+    /// answer; `compare` demands that surrogate and study agree in it. Hexadecimal SHA-256.
+    pub fn problem_hash(&self) -> String {
+        identity::problem_hash(self)
+    }
+
+    /// Hash of the whole study with its defaults. Hexadecimal SHA-256.
+    pub fn study_hash(&self) -> String {
+        identity::study_hash(self)
+    }
+}

@@ -1,0 +1,113 @@
+//! The study file as written: every value with its place, nothing checked but names and types.
+
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
+use std::marker::PhantomData;
+use toml::Spanned;
+
+use super::error::StudyError;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Study {
+    pub format: Spanned<i64>,
+    pub name: Spanned<String>,
+    pub seed: Option<Spanned<i64>>,
+    pub model: Model,
+    pub inputs: Spanned<Ordered<Input>>,
+    #[serde(default)]
+    pub spectrum: Spectrum,
+    #[serde(default)]
+    pub design: Design,
+    #[serde(default)]
+    pub fit: Fit,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Model {
+    pub kind: Spanned<String>,
+    #[serde(default)]
+    pub constants: Ordered<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Input {
+    pub distribution: Spanned<String>,
+    pub lower: Option<f64>,
+    pub upper: Option<f64>,
+    pub nominal: Option<f64>,
+    pub spread: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Spectrum {
+    pub target: Option<Spanned<String>>,
+    pub modes: Option<Spanned<Modes>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "modes must be \"all\" or a list of mode numbers like [3, 4]")]
+pub(super) enum Modes {
+    Word(String),
+    Ranks(Vec<i64>),
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Design {
+    pub kind: Option<Spanned<String>>,
+    pub initial: Option<Spanned<i64>>,
+    pub step: Option<Spanned<i64>>,
+    pub maximum: Option<Spanned<i64>>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Fit {
+    pub method: Option<Spanned<String>>,
+    pub max_degree: Option<Spanned<i64>>,
+    pub q_norm: Option<Spanned<f64>>,
+    pub s2_target: Option<Spanned<f64>>,
+    pub epsilon_forward: Option<Spanned<f64>>,
+    pub epsilon_backward: Option<Spanned<f64>>,
+}
+
+/// A table whose order matters: the order of inputs is the order of the standardized variables.
+#[derive(Debug)]
+pub(super) struct Ordered<T>(pub Vec<(String, Spanned<T>)>);
+
+impl<T> Default for Ordered<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Ordered<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entries<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
+            type Value = Ordered<T>;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a table")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = map.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Ordered(entries))
+            }
+        }
+        deserializer.deserialize_map(Entries(PhantomData))
+    }
+}
+
+pub(super) fn parse(text: &str) -> Result<Study, StudyError> {
+    toml::from_str(text).map_err(|error| StudyError::Syntax(error.to_string().trim_end().to_owned()))
+}

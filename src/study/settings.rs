@@ -1,0 +1,101 @@
+//! The decisions a study records.
+
+use crate::spectrum::{Modes, Target};
+
+/// The model and what it is given besides the uncertain inputs.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum ModelSettings {
+    /// The built-in clutch.
+    Clutch {
+        /// Constants that replace nominal values, by name, sorted.
+        constants: Vec<(String, f64)>,
+    },
+}
+
+impl ModelSettings {
+    /// Name in study files.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Clutch { .. } => "clutch",
+        }
+    }
+}
+
+/// What of the spectrum is expanded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectrumSettings {
+    /// What the components are.
+    pub target: Target,
+    /// Which modes.
+    pub modes: Modes,
+}
+
+/// How design points are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DesignKind {
+    /// Nested Latin hypercube levels.
+    NestedLhs,
+}
+
+impl DesignKind {
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NestedLhs => "nested-lhs",
+        }
+    }
+}
+
+/// The experimental design and how it grows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignSettings {
+    /// How points are chosen.
+    pub kind: DesignKind,
+    /// Number of points of the first level, at least 2.
+    pub initial: usize,
+    /// Points added by each enrichment, at least 1.
+    pub step: usize,
+    /// Number of points the design never exceeds, at least `initial`.
+    pub maximum: usize,
+}
+
+impl DesignSettings {
+    /// The size of the level after `size`, or `None` at the maximum.
+    pub fn next_size(&self, size: usize) -> Option<usize> {
+        (size < self.maximum).then(|| size.saturating_add(self.step).min(self.maximum))
+    }
+}
+
+/// Fitting methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FitMethod {
+    /// The paper's stepwise regression.
+    Stepwise,
+}
+
+impl FitMethod {
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stepwise => "stepwise",
+        }
+    }
+}
+
+/// Settings of the stepwise construction of a sparse basis (section 3.3.3 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stepwise {
+    /// p_max, at least 1.
+    pub max_degree: u16,
+    /// q of the index sets, in (0, 1].
+    pub q_norm: f64,
+    /// S² at which a component is accurate enough, in (0, 1\].
+    pub s2_target: f64,
+    /// ε₁: the rise of R² from which a candidate is kept, not negative.
+    pub epsilon_forward: f64,
+    /// ε₂: the fall of R² below which a term is dropped, not negative.
+    pub epsilon_backward: f64,
+}

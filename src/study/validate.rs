@@ -1,0 +1,254 @@
+//! From the file as written to a study in which everything holds.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use toml::Spanned;
+
+use super::error::{Place, StudyError};
+use super::settings::{DesignKind, DesignSettings, FitMethod, ModelSettings, SpectrumSettings, Stepwise};
+use super::{STUDY_FORMAT, Study, defaults, raw};
+use crate::input::{Input, InputSpace, Marginal, Uniform};
+use crate::model::{CLUTCH_PARAMETERS, Parameter};
+use crate::spectrum::{Modes, Target};
+
+/// Degrees above this are numerically meaningless and would not fit the file format's indices times a safety factor.
+const HIGHEST_DEGREE: i64 = 1000;
+
+/// Design sizes above this need more memory for the regression than a workstation has.
+const LARGEST_DESIGN: i64 = 1_000_000;
+
+pub(super) fn study(raw: raw::Study, text: &str) -> Result<Study, StudyError> {
+    let lines = Lines { text };
+    if *raw.format.get_ref() != i64::from(STUDY_FORMAT) {
+        let place = lines.place("format", &raw.format);
+        return Err(StudyError::Format { place, found: *raw.format.get_ref(), known: STUDY_FORMAT });
+    }
+    let name = lines.name(raw.name)?;
+    let seed = match raw.seed {
+        Some(seed) => lines.integer("seed", seed, 0..=i64::MAX)? as u64,
+        None => defaults::SEED,
+    };
+    lines.word("model.kind", &raw.model.kind, &[("clutch", ())])?;
+    let inputs = lines.inputs(raw.inputs)?;
+    let constants = lines.constants(raw.model.constants, &inputs)?;
+    let dimension = inputs.dimension();
+    Ok(Study {
+        name,
+        seed,
+        model: ModelSettings::Clutch { constants },
+        inputs,
+        spectrum: lines.spectrum(raw.spectrum)?,
+        design: lines.design(raw.design, dimension)?,
+        fit: lines.fit(raw.fit)?,
+    })
+}
+
+/// Knows the text, so that errors can name lines.
+struct Lines<'a> {
+    text: &'a str,
+}
+
+impl Lines<'_> {
+    fn place<T>(&self, key: impl Into<String>, value: &Spanned<T>) -> Place {
+        let before = &self.text.as_bytes()[..value.span().start.min(self.text.len())];
+        Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
+    }
+
+    fn out_of_range<T: Display>(&self, key: &str, value: &Spanned<T>, expected: impl Into<String>) -> StudyError {
+        StudyError::OutOfRange {
+            place: self.place(key, value),
+            found: value.get_ref().to_string(),
+            expected: expected.into(),
+        }
+    }
+
+    fn integer(&self, key: &str, value: Spanned<i64>, range: RangeInclusive<i64>) -> Result<i64, StudyError> {
+        if range.contains(value.get_ref()) {
+            return Ok(value.into_inner());
+        }
+        Err(self.out_of_range(key, &value, format!("a whole number from {} to {}", range.start(), range.end())))
+    }
+
+    fn number(
+        &self,
+        key: &str,
+        value: Option<Spanned<f64>>,
+        default: f64,
+        expected: &str,
+        holds: impl Fn(f64) -> bool,
+    ) -> Result<f64, StudyError> {
+        match value {
+            None => Ok(default),
+            Some(value) if holds(*value.get_ref()) => Ok(value.into_inner()),
+            Some(value) => Err(self.out_of_range(key, &value, expected)),
+        }
+    }
+
+    fn word<T: Copy>(&self, key: &str, word: &Spanned<String>, known: &[(&str, T)]) -> Result<T, StudyError> {
+        known.iter().find(|(name, _)| name == word.get_ref()).map(|&(_, meaning)| meaning).ok_or_else(|| {
+            let names: Vec<_> = known.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+            StudyError::UnknownWord {
+                place: self.place(key, word),
+                found: word.get_ref().clone(),
+                expected: names.join(" or "),
+            }
+        })
+    }
+
+    /// Names become file names, so they hold nothing that a file system or a shell gives a meaning.
+    fn name(&self, name: Spanned<String>) -> Result<String, StudyError> {
+        let allowed = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        let text = name.get_ref();
+        if (1..=100).contains(&text.len()) && text.chars().all(allowed) && !text.starts_with(['.', '-']) {
+            return Ok(name.into_inner());
+        }
+        Err(StudyError::OutOfRange {
+            place: self.place("name", &name),
+            found: format!("{text:?}"),
+            expected: "1 to 100 letters, digits, '.', '_' or '-', starting with a letter, digit or '_'".to_owned(),
+        })
+    }
+
+    fn parameter<T>(&self, table: &str, name: &str, value: &Spanned<T>) -> Result<&'static Parameter, StudyError> {
+        CLUTCH_PARAMETERS.iter().find(|parameter| parameter.name == name).ok_or_else(|| StudyError::UnknownParameter {
+            place: self.place(format!("{table}.{name}"), value),
+            known: CLUTCH_PARAMETERS.map(|parameter| parameter.name).join(", "),
+        })
+    }
+
+    fn inputs(&self, table: Spanned<raw::Ordered<raw::Input>>) -> Result<InputSpace, StudyError> {
+        let place = self.place("inputs", &table);
+        let mut inputs = Vec::new();
+        for (name, raw) in table.into_inner().0 {
+            let parameter = self.parameter("inputs", &name, &raw)?;
+            inputs.push(Input { marginal: self.marginal(parameter, &raw)?, name });
+        }
+        InputSpace::new(inputs).map_err(|source| StudyError::Inputs { place, source })
+    }
+
+    fn marginal(&self, parameter: &Parameter, raw: &Spanned<raw::Input>) -> Result<Marginal, StudyError> {
+        let key = format!("inputs.{}", parameter.name);
+        let input = raw.get_ref();
+        self.word(&format!("{key}.distribution"), &input.distribution, &[("uniform", ())])?;
+        let place = self.place(&key, raw);
+        let (lower, upper) = match (input.lower, input.upper, input.nominal, input.spread) {
+            (Some(lower), Some(upper), None, None) => (lower, upper),
+            (None, None, Some(nominal), Some(spread)) => (nominal * (1.0 - spread), nominal * (1.0 + spread)),
+            _ => return Err(StudyError::DistributionForm { place }),
+        };
+        let uniform =
+            Uniform::new(lower, upper).map_err(|source| StudyError::Distribution { place: place.clone(), source })?;
+        if !parameter.range.contains(lower) {
+            let expected = format!("{} over the whole interval", parameter.range.describe());
+            return Err(StudyError::OutOfRange { place, found: format!("from {lower} to {upper}"), expected });
+        }
+        Ok(Marginal::Uniform(uniform))
+    }
+
+    fn constants(&self, table: raw::Ordered<f64>, inputs: &InputSpace) -> Result<Vec<(String, f64)>, StudyError> {
+        let mut constants = Vec::new();
+        for (name, value) in table.0 {
+            let key = format!("model.constants.{name}");
+            let parameter = self.parameter("model.constants", &name, &value)?;
+            if inputs.names().any(|input| input == name) {
+                return Err(StudyError::ConstantAndInput { place: self.place(key, &value) });
+            }
+            if !parameter.range.contains(*value.get_ref()) {
+                return Err(self.out_of_range(&key, &value, format!("a number {}", parameter.range.describe())));
+            }
+            constants.push((name, value.into_inner()));
+        }
+        constants.sort_by(|a, b| a.0.cmp(&b.0));
+        Ok(constants)
+    }
+
+    fn spectrum(&self, raw: raw::Spectrum) -> Result<SpectrumSettings, StudyError> {
+        let target = match raw.target {
+            Some(word) => self.word("spectrum.target", &word, &[("eigenvalues", Target::Eigenvalues)])?,
+            None => Target::Eigenvalues,
+        };
+        let modes = match raw.modes {
+            Some(modes) => self.modes(modes)?,
+            None => defaults::MODES,
+        };
+        Ok(SpectrumSettings { target, modes })
+    }
+
+    fn modes(&self, raw: Spanned<raw::Modes>) -> Result<Modes, StudyError> {
+        let place = self.place("spectrum.modes", &raw);
+        let wrong = |found: String| StudyError::OutOfRange {
+            place,
+            found,
+            expected: "\"all\" or a list of distinct mode numbers from 1, like [3, 4]".to_owned(),
+        };
+        match raw.into_inner() {
+            raw::Modes::Word(word) if word == "all" => Ok(Modes::All),
+            raw::Modes::Word(word) => Err(wrong(format!("{word:?}"))),
+            raw::Modes::Ranks(ranks) => {
+                let mut sorted = ranks.clone();
+                sorted.sort_unstable();
+                sorted.dedup();
+                if sorted.len() < ranks.len() || sorted.first().is_none_or(|&first| first < 1) {
+                    return Err(wrong(format!("{ranks:?}")));
+                }
+                Ok(Modes::Ranks(sorted.into_iter().map(|rank| rank as usize).collect()))
+            }
+        }
+    }
+
+    fn design(&self, raw: raw::Design, inputs: usize) -> Result<DesignSettings, StudyError> {
+        let kind = match raw.kind {
+            Some(word) => self.word("design.kind", &word, &[("nested-lhs", DesignKind::NestedLhs)])?,
+            None => DesignKind::NestedLhs,
+        };
+        let size = |key: &str, value: Option<Spanned<i64>>, smallest: i64, default: usize| match value {
+            Some(value) => self.integer(key, value, smallest..=LARGEST_DESIGN).map(|size| size as usize),
+            None => Ok(default),
+        };
+        let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
+        let initial_was_given = raw.initial.is_some();
+        let maximum = size("design.maximum", raw.maximum, 2, defaults::MAXIMUM)?;
+        let initial = size("design.initial", raw.initial, 2, defaults::initial(inputs).min(maximum))?;
+        let step = size("design.step", raw.step, 1, defaults::step(inputs))?;
+        match maximum_place {
+            Some(place) if initial_was_given && initial > maximum => Err(StudyError::OutOfRange {
+                place,
+                found: maximum.to_string(),
+                expected: format!("at least design.initial ({initial})"),
+            }),
+            _ => Ok(DesignSettings { kind, initial, step, maximum: maximum.max(initial) }),
+        }
+    }
+
+    fn fit(&self, raw: raw::Fit) -> Result<Stepwise, StudyError> {
+        if let Some(word) = &raw.method {
+            self.word("fit.method", word, &[(FitMethod::Stepwise.name(), ())])?;
+        }
+        let max_degree = match raw.max_degree {
+            Some(value) => self.integer("fit.max_degree", value, 1..=HIGHEST_DEGREE)? as u16,
+            None => defaults::MAX_DEGREE,
+        };
+        let share = |value: f64| value > 0.0 && value <= 1.0;
+        let cutoff = |value: f64| (0.0..1.0).contains(&value);
+        let (in_share, in_cutoff) = ("a number above 0 and at most 1", "a number from 0 to below 1");
+        Ok(Stepwise {
+            max_degree,
+            q_norm: self.number("fit.q_norm", raw.q_norm, defaults::Q_NORM, in_share, share)?,
+            s2_target: self.number("fit.s2_target", raw.s2_target, defaults::S2_TARGET, in_share, share)?,
+            epsilon_forward: self.number(
+                "fit.epsilon_forward",
+                raw.epsilon_forward,
+                defaults::EPSILON_FORWARD,
+                in_cutoff,
+                cutoff,
+            )?,
+            epsilon_backward: self.number(
+                "fit.epsilon_backward",
+                raw.epsilon_backward,
+                defaults::EPSILON_BACKWARD,
+                in_cutoff,
+                cutoff,
+            )?,
+        })
+    }
+}
