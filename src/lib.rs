@@ -1,6 +1,9 @@
 //! pcc
+pub mod artifact;
 pub mod build;
+pub mod cli;
 pub mod design;
+pub mod digest;
 pub mod eval;
 pub mod fit;
 pub mod index_set;
@@ -12,6 +15,7 @@ pub mod progress;
 pub mod random;
 pub mod reference;
 pub mod regression;
+pub mod report;
 pub mod spectrum;
 pub mod statistics;
 pub mod study;

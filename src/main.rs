@@ -1,1 +1,7 @@
-fn main() {}
+//! The `pcc` program: everything is in the library.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    pcc::cli::main()
+}

@@ -108,7 +108,7 @@ pub fn compare(
             })
             .collect(),
     };
-    for_each_chunk(study, samples, seed, observer, |runs| {
+    for_each_chunk(study, samples, seed, observer, |_, runs| {
         let points: Vec<&[f64]> = runs.iter().map(|run| run.standardized.as_slice()).collect();
         let block = evaluate_points(surrogate, &plan, &points);
         for (run, &max_re) in runs.iter().zip(&block.max_re) {

@@ -2,6 +2,8 @@
 
 mod compare;
 mod monte_carlo;
+mod runner;
 
 pub use compare::{Comparison, ComponentError, compare};
-pub use monte_carlo::{Reference, ReferenceError, at_points, monte_carlo};
+pub use monte_carlo::{Reference, ReferenceError, monte_carlo};
+pub use runner::{Run, Runner};

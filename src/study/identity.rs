@@ -1,56 +1,42 @@
 //! Hashes that say whether two studies ask the same question.
 
-use serde::Serialize;
-use sha2::{Digest, Sha256};
+use std::fmt::Write;
 
 use super::{ModelSettings, Study};
+use crate::digest::sha256;
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
 use crate::spectrum::Modes;
 
-/// What has one true answer, in canonical form: names sorted or in the order that gives them meaning, numbers by their
-/// shortest exact decimal, constants with the nominal values that the study left alone.
-#[derive(Serialize)]
-struct Problem<'a> {
-    model: &'a str,
-    constants: Vec<(&'a str, f64)>,
-    inputs: Vec<(&'a str, &'a str, [f64; 2])>,
-    target: &'a str,
-    modes: Option<&'a [usize]>,
-}
-
 pub(super) fn problem_hash(study: &Study) -> String {
-    let ModelSettings::Clutch { constants } = &study.model;
-    let value_of = |name: &str| constants.iter().find(|(known, _)| known == name).map(|(_, value)| *value);
-    let problem = Problem {
-        model: study.model.kind(),
-        constants: CLUTCH_PARAMETERS
-            .iter()
-            .filter(|parameter| study.inputs.names().all(|input| input != parameter.name))
-            .map(|parameter| (parameter.name, value_of(parameter.name).unwrap_or(parameter.nominal)))
-            .collect(),
-        inputs: study
-            .inputs
-            .inputs()
-            .iter()
-            .map(|input| match &input.marginal {
-                Marginal::Uniform(uniform) => (&*input.name, "uniform", [uniform.lower(), uniform.upper()]),
-            })
-            .collect(),
-        target: study.spectrum.target.name(),
-        modes: match &study.spectrum.modes {
-            Modes::All => None,
-            Modes::Ranks(ranks) => Some(ranks),
-        },
-    };
-    let canonical = serde_json::to_vec(&problem).unwrap_or_default();
-    hexadecimal(&Sha256::digest(canonical))
+    sha256(problem(study).as_bytes())
 }
 
 pub(super) fn study_hash(study: &Study) -> String {
-    hexadecimal(&Sha256::digest(study.to_toml()))
+    sha256(study.to_toml().as_bytes())
 }
 
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+/// What has one true answer, as text, one fact a line: constants with the nominal values that the study left alone,
+/// inputs in the order that gives them meaning, numbers by their shortest exact decimal.
+fn problem(study: &Study) -> String {
+    let ModelSettings::Clutch { constants } = &study.model;
+    let mut text = format!("model {}\n", study.model.kind());
+    for parameter in CLUTCH_PARAMETERS {
+        if study.inputs.names().all(|input| input != parameter.name) {
+            let given = constants.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
+            let _ = writeln!(text, "constant {} {:?}", parameter.name, given.unwrap_or(parameter.nominal));
+        }
+    }
+    for input in study.inputs.inputs() {
+        let Marginal::Uniform(uniform) = &input.marginal;
+        let _ = writeln!(text, "input {} uniform {:?} {:?}", input.name, uniform.lower(), uniform.upper());
+    }
+    let _ = writeln!(text, "target {}", study.spectrum.target.name());
+    match &study.spectrum.modes {
+        Modes::All => text.push_str("modes all\n"),
+        Modes::Ranks(ranks) => {
+            let _ = writeln!(text, "modes {ranks:?}");
+        }
+    }
+    text
 }

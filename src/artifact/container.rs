@@ -1,0 +1,164 @@
+//! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
+
+use super::binary::{CERTIFICATES, SECTION_NAMES, decode_body, sections};
+use super::error::{ReadError, WriteError};
+use super::v1::{Document, FormatVersion};
+use super::version::{Compatibility, MAJOR, MINOR, compatibility};
+use serde::de::DeserializeOwned;
+
+/// As in PNG, the first byte exposes transfers that clear the eighth bit, and the line ends those that translate them.
+const MAGIC: [u8; 8] = [0x89, b'P', b'C', b'C', 0x0D, 0x0A, 0x1A, 0x0A];
+
+/// Section bodies by bincode 2, fixed-width integers, little-endian.
+const CODEC: u32 = 1;
+
+/// Bytes before the first section.
+const HEADER: usize = 24;
+
+/// Bytes of the CRC-32 at the end.
+const CHECKSUM: usize = 4;
+
+/// What a container held.
+pub(super) struct Decoded {
+    pub document: Document,
+    pub version: (u16, u16),
+    pub unknown_sections: Vec<u16>,
+}
+
+pub(super) fn encode(document: &Document) -> Result<Vec<u8>, WriteError> {
+    let mut body = Vec::new();
+    for section in sections(document)? {
+        section.write(&mut body);
+    }
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend(MAJOR.to_le_bytes());
+    bytes.extend(MINOR.to_le_bytes());
+    bytes.extend(CODEC.to_le_bytes());
+    bytes.extend((body.len() as u64).to_le_bytes());
+    bytes.append(&mut body);
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    Ok(bytes)
+}
+
+pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, ReadError> {
+    let mut reader = Reader { bytes };
+    let too_short = ReadError::TooShort { length: bytes.len(), smallest: HEADER + CHECKSUM };
+    if bytes.len() < HEADER + CHECKSUM {
+        return Err(if bytes.starts_with(&MAGIC) { too_short } else { ReadError::NotASurrogate });
+    }
+    let fields = (reader.array(), reader.u16(), reader.u16(), reader.u32(), reader.u64());
+    let (Some(magic), Some(major), Some(minor), Some(codec), Some(announced)) = fields else { return Err(too_short) };
+    if magic != MAGIC {
+        return Err(ReadError::NotASurrogate);
+    }
+    if compatibility(major, minor) == Compatibility::OtherMajor {
+        return Err(ReadError::Version { major, minor });
+    }
+    if codec != CODEC {
+        return Err(ReadError::Codec { codec });
+    }
+    let (found, announced) = (bytes.len() as u64, announced.saturating_add((HEADER + CHECKSUM) as u64));
+    if found != announced {
+        return Err(ReadError::Length { found, announced });
+    }
+    let (content, checksum) = bytes.split_at(bytes.len() - CHECKSUM);
+    if crc32fast::hash(content).to_le_bytes() != checksum {
+        return Err(ReadError::Checksum);
+    }
+    document(&content[HEADER..], (major, minor))
+}
+
+fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
+    let (known, unknown_sections) = section_table(bytes, version)?;
+    let sections = Bodies { known, minor: version.1 };
+    let document = Document {
+        format: FormatVersion { major: version.0, minor: version.1 },
+        meta: sections.required(1)?,
+        inputs: sections.required(2)?,
+        outputs: sections.required(3)?,
+        elements: sections.required(4)?,
+        expansions: sections.required(5)?,
+        training: sections.required(6)?,
+        decision: sections.required(7)?,
+        self_test: sections.required(8)?,
+        certificates: sections.optional(CERTIFICATES)?,
+    };
+    Ok(Decoded { document, version, unknown_sections })
+}
+
+/// Splits the content into the sections this code knows and the kinds of those it may skip.
+fn section_table(bytes: &[u8], (major, minor): (u16, u16)) -> Result<(Vec<(u16, &[u8])>, Vec<u16>), ReadError> {
+    let mut reader = Reader { bytes };
+    let (mut known, mut skipped, mut before) = (Vec::new(), Vec::new(), 0);
+    while !reader.bytes.is_empty() {
+        let damaged = |what: &str| ReadError::SectionTable(format!("{what} after section {before}"));
+        let header = [reader.u16(), reader.u16(), reader.u16(), reader.u16()];
+        let ([Some(kind), Some(version), Some(flags), Some(reserved)], Some(length)) = (header, reader.u64()) else {
+            return Err(damaged("a section header is cut off"));
+        };
+        if kind <= before {
+            return Err(damaged(&format!("section {kind} is out of order")));
+        }
+        if reserved != 0 || flags > 1 {
+            return Err(damaged(&format!("section {kind} has unknown flags")));
+        }
+        let body = usize::try_from(length).ok().and_then(|length| reader.take(length));
+        let body = body.ok_or_else(|| damaged(&format!("section {kind} is cut off")))?;
+        let is_known = usize::from(kind) <= SECTION_NAMES.len() && version == 1;
+        if is_known {
+            known.push((kind, body));
+        } else if flags & 1 == 1 {
+            return Err(ReadError::UnknownSection { kind, version, major, minor });
+        } else {
+            skipped.push(kind);
+        }
+        before = kind;
+    }
+    Ok((known, skipped))
+}
+
+struct Bodies<'a> {
+    known: Vec<(u16, &'a [u8])>,
+    minor: u16,
+}
+
+impl Bodies<'_> {
+    fn optional<T: DeserializeOwned>(&self, kind: u16) -> Result<Option<T>, ReadError> {
+        let found = self.known.iter().find(|(known, _)| *known == kind);
+        found.map(|(_, body)| decode_body(kind, body, self.minor)).transpose()
+    }
+
+    fn required<T: DeserializeOwned>(&self, kind: u16) -> Result<T, ReadError> {
+        let section = SECTION_NAMES[usize::from(kind) - 1];
+        self.optional(kind)?.ok_or(ReadError::MissingSection { section })
+    }
+}
+
+/// Takes little-endian fields from the front of a slice; `None` if there are too few bytes.
+struct Reader<'a> {
+    bytes: &'a [u8],
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let (front, rest) = self.bytes.split_at_checked(length)?;
+        self.bytes = rest;
+        Some(front)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.take(N)?.try_into().ok()
+    }
+
+    fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+}

@@ -1,0 +1,88 @@
+//! Checks that need no domain type: every number finite, and small helpers to say what is wrong.
+
+use super::error::ReadError;
+use super::v1::{self, Document};
+
+/// The first section that holds a NaN or an infinity.
+pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
+    let sections: [(&str, Vec<f64>); 8] = [
+        ("inputs", document.inputs.inputs.iter().flat_map(input).collect()),
+        ("outputs", document.outputs.outputs.iter().flat_map(output).collect()),
+        ("elements", elements(&document.elements)),
+        ("expansions", document.expansions.expansions.iter().flat_map(expansion).collect()),
+        ("training", document.training.settings.iter().filter_map(setting).collect()),
+        ("decision", decision(&document.decision)),
+        ("self_test", self_test(&document.self_test)),
+        (
+            "certificates",
+            document.certificates.iter().flat_map(|all| &all.certificates).flat_map(certificate).collect(),
+        ),
+    ];
+    sections.into_iter().find(|(_, numbers)| numbers.iter().any(|number| !number.is_finite())).map(|(name, _)| name)
+}
+
+fn input(input: &v1::Input) -> Vec<f64> {
+    let v1::Distribution::Uniform { lower, upper } = input.distribution;
+    let v1::Transform::Affine { center, half_width } = input.transform;
+    let mut numbers = vec![lower, upper, center, half_width];
+    numbers.extend(&input.recurrence.diagonal);
+    numbers.extend(&input.recurrence.off_diagonal);
+    numbers.extend(bounds(&input.bounds));
+    numbers
+}
+
+fn bounds(bounds: &Option<v1::Bounds>) -> impl Iterator<Item = f64> {
+    bounds.iter().flat_map(|bounds| [bounds.lower, bounds.upper])
+}
+
+fn output(output: &v1::Output) -> Vec<f64> {
+    output.components.iter().flat_map(|component| [component.center, component.scale]).collect()
+}
+
+fn elements(elements: &v1::Elements) -> Vec<f64> {
+    let mut numbers: Vec<f64> = elements.splits.iter().map(|split| split.at).collect();
+    for element in &elements.elements {
+        numbers.push(element.weight);
+        for side in &element.sides {
+            numbers.extend([side.center, side.half_width]);
+            numbers.extend(bounds(&side.bounds));
+        }
+    }
+    numbers
+}
+
+fn expansion(expansion: &v1::Expansion) -> Vec<f64> {
+    let errors = [expansion.r2, expansion.s2, expansion.corrected_s2];
+    expansion.coefficients.iter().copied().chain(errors.into_iter().flatten()).collect()
+}
+
+fn setting(setting: &v1::Setting) -> Option<f64> {
+    match setting.value {
+        v1::SettingValue::Number(number) => Some(number),
+        _ => None,
+    }
+}
+
+fn decision(decision: &v1::Decision) -> Vec<f64> {
+    let quantiles = decision.max_re_residuals.iter().flat_map(|quantile| [quantile.level, quantile.value]);
+    quantiles.chain(decision.proportion_error).collect()
+}
+
+fn self_test(self_test: &v1::SelfTest) -> Vec<f64> {
+    let lists = self_test.points.iter().chain(&self_test.components).flatten();
+    lists.chain(&self_test.max_re).copied().chain([self_test.tolerance]).collect()
+}
+
+fn certificate(certificate: &v1::Certificate) -> [f64; 3] {
+    [certificate.level, certificate.lower, certificate.upper]
+}
+
+/// Fails with `message` unless `holds`.
+pub(super) fn ensure(section: &'static str, holds: bool, message: impl FnOnce() -> String) -> Result<(), ReadError> {
+    if holds { Ok(()) } else { Err(ReadError::Meaning { section, message: message() }) }
+}
+
+/// Whether `hash` is a hexadecimal SHA-256.
+pub(super) fn is_hash(hash: &str) -> bool {
+    hash.len() == 64 && hash.bytes().all(|byte| byte.is_ascii_hexdigit() && !byte.is_ascii_uppercase())
+}

@@ -1,0 +1,108 @@
+//! Files that appear whole or not at all.
+
+use super::error::WriteError;
+#[cfg(unix)]
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+use tempfile::NamedTempFile;
+
+/// Writes `path` through a temporary file beside it: synced, renamed over the old file, folder synced. A reader sees the
+/// old content or the new, never a part.
+///
+/// # Errors
+///
+/// [`WriteError::Io`]; an existing file is then unchanged.
+pub fn save(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    save_with(path, |file| file.write_all(bytes))
+}
+
+/// The same for content that is produced piece by piece.
+///
+/// # Errors
+///
+/// [`WriteError::Io`], also for an error that `write` returns; an existing file is then unchanged.
+pub fn save_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
+    replace(path, write).map_err(|error| failed(path, &error))
+}
+
+/// Whether [`save`] could write `path` now: asked before long work whose result would have no place.
+///
+/// # Errors
+///
+/// [`WriteError::Io`].
+pub fn check_writable(path: &Path) -> Result<(), WriteError> {
+    temporary(path).map(drop).map_err(|error| failed(path, &error))
+}
+
+fn failed(path: &Path, error: &io::Error) -> WriteError {
+    WriteError::Io { path: path.display().to_string(), message: error.to_string() }
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+fn temporary(path: &Path) -> io::Result<NamedTempFile> {
+    if path.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; name a file"));
+    }
+    if !folder(path).is_dir() {
+        return Err(io::Error::new(io::ErrorKind::NotFound, "its folder does not exist; create it first"));
+    }
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".pcc-").suffix(".partial");
+    #[cfg(unix)]
+    {
+        // What any new file gets: the user's mask takes away from this.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder(path))
+}
+
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut file = temporary(path)?;
+    let mut buffered = io::BufWriter::new(file.as_file_mut());
+    write(&mut buffered)?;
+    buffered.flush()?;
+    drop(buffered);
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
+    #[cfg(unix)]
+    File::open(folder(path))?.sync_all()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        save(&path, b"old").unwrap();
+        let result = save_with(&path, |file| {
+            file.write_all(b"half")?;
+            Err(io::Error::other("stopped"))
+        });
+        assert!(matches!(result, Err(WriteError::Io { .. })));
+        assert_eq!(std::fs::read(&path).unwrap(), b"old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        save(&path, b"new").unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn folders_and_missing_folders_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(check_writable(folder.path()).is_err());
+        assert!(check_writable(&folder.path().join("missing").join("file")).is_err());
+        assert!(check_writable(&folder.path().join("file")).is_ok());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,184 @@
+//! From a surrogate to the sections of format 1.
+
+use super::binary;
+use super::error::WriteError;
+use super::meaning::not_finite;
+use super::v1;
+use super::version::{MAJOR, MINOR};
+use crate::input::Marginal;
+use crate::polynomial::Family;
+use crate::spectrum::{Output, OutputKind};
+use crate::surrogate::{Certificate, Expansion, LeaveOut, SettingValue, StopReason, Surrogate};
+
+pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
+    let provenance = &surrogate.provenance;
+    let mut document = v1::Document {
+        format: v1::FormatVersion { major: MAJOR, minor: MINOR },
+        meta: v1::Meta {
+            tool_version: provenance.tool_version.clone(),
+            study_name: provenance.study_name.clone(),
+            problem_hash: provenance.problem_hash.clone(),
+            study_hash: provenance.study_hash.clone(),
+            content_id: String::new(),
+        },
+        inputs: inputs(surrogate),
+        outputs: v1::Outputs { outputs: surrogate.outputs.iter().map(output).collect() },
+        elements: global_element(surrogate.inputs.dimension()),
+        expansions: expansions(&surrogate.expansions),
+        training: training(surrogate),
+        decision: decision(surrogate),
+        self_test: v1::SelfTest {
+            points: surrogate.self_test.points.clone(),
+            components: surrogate.self_test.components.clone(),
+            max_re: surrogate.self_test.max_re.clone(),
+            tolerance: surrogate.self_test.tolerance,
+        },
+        certificates: certificates(&surrogate.certificates),
+    };
+    if let Some(section) = not_finite(&document) {
+        return Err(WriteError::NotFinite { section });
+    }
+    document.meta.content_id = binary::content_id(&document)?;
+    Ok(document)
+}
+
+fn inputs(surrogate: &Surrogate) -> v1::Inputs {
+    let dimension = surrogate.inputs.dimension();
+    let mut degrees = vec![0; dimension];
+    for expansion in &surrogate.expansions {
+        for (degree, highest) in degrees.iter_mut().zip(expansion.indices.highest_degrees(dimension)) {
+            *degree = highest.max(*degree);
+        }
+    }
+    let input = |(input, degree): (&crate::input::Input, u16)| {
+        let Marginal::Uniform(uniform) = &input.marginal;
+        let (lower, upper) = (uniform.lower(), uniform.upper());
+        let family = input.marginal.family();
+        let recurrence = family.recurrence(usize::from(degree));
+        v1::Input {
+            name: input.name.clone(),
+            distribution: v1::Distribution::Uniform { lower, upper },
+            transform: v1::Transform::Affine { center: uniform.center(), half_width: uniform.half_width() },
+            family: match family {
+                Family::Legendre => v1::Family::Legendre,
+            },
+            recurrence: v1::Recurrence { diagonal: recurrence.diagonal, off_diagonal: recurrence.off_diagonal },
+            bounds: Some(v1::Bounds { lower, upper }),
+        }
+    };
+    let inputs = surrogate.inputs.inputs().iter().zip(degrees).map(input).collect();
+    v1::Inputs { inputs, dependence: v1::Dependence::Independent }
+}
+
+fn output(output: &Output) -> v1::Output {
+    let component = |component: &crate::spectrum::Component| v1::Component {
+        id: component.id as u32,
+        name: component.name.clone(),
+        center: component.center,
+        scale: component.scale,
+    };
+    v1::Output {
+        kind: match output.kind {
+            OutputKind::Eigenvalue => v1::OutputKind::Eigenvalue,
+        },
+        modes: output.modes.iter().map(|&mode| mode as u32).collect(),
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        components: output.components.iter().map(component).collect(),
+    }
+}
+
+/// The whole box [−1, 1]ʳ as one element.
+pub(super) fn global_element(dimension: usize) -> v1::Elements {
+    let side = v1::Side { bounds: Some(v1::Bounds { lower: -1.0, upper: 1.0 }), center: 0.0, half_width: 1.0 };
+    v1::Elements { elements: vec![v1::Element { weight: 1.0, sides: vec![side; dimension] }], splits: Vec::new() }
+}
+
+/// Expansions with equal index sets share one.
+fn expansions(expansions: &[Expansion]) -> v1::Expansions {
+    let mut index_sets: Vec<Vec<Vec<u16>>> = Vec::new();
+    let expansions = expansions
+        .iter()
+        .enumerate()
+        .map(|(component, expansion)| {
+            let indices: Vec<Vec<u16>> = expansion.indices.iter().map(|alpha| alpha.to_vec()).collect();
+            let index_set = index_sets.iter().position(|known| *known == indices).unwrap_or_else(|| {
+                index_sets.push(indices);
+                index_sets.len() - 1
+            });
+            v1::Expansion {
+                element: 0,
+                component: component as u32,
+                index_set: index_set as u32,
+                coefficients: expansion.coefficients.clone(),
+                r2: expansion.r2,
+                s2: expansion.s2,
+                corrected_s2: expansion.corrected_s2,
+                leave_out: match expansion.leave_out {
+                    LeaveOut::Row => v1::LeaveOut::Row,
+                    LeaveOut::Run => v1::LeaveOut::Run,
+                },
+                degree: expansion.degree,
+                stop: match expansion.stop {
+                    StopReason::Accurate => v1::Stop::Accurate,
+                    StopReason::HighestDegree => v1::Stop::HighestDegree,
+                    StopReason::DesignExhausted => v1::Stop::DesignExhausted,
+                    StopReason::Constant => v1::Stop::Constant,
+                },
+            }
+        })
+        .collect();
+    v1::Expansions { index_sets, expansions }
+}
+
+fn training(surrogate: &Surrogate) -> v1::Training {
+    let training = &surrogate.training;
+    let setting = |setting: &crate::surrogate::Setting| v1::Setting {
+        key: setting.key.clone(),
+        value: match &setting.value {
+            SettingValue::Integer(value) => v1::SettingValue::Integer(*value),
+            SettingValue::Number(value) => v1::SettingValue::Number(*value),
+            SettingValue::Text(value) => v1::SettingValue::Text(value.clone()),
+            SettingValue::Flag(value) => v1::SettingValue::Flag(*value),
+        },
+    };
+    let counts = training.counts;
+    v1::Training {
+        method: training.method.clone(),
+        settings: training.settings.iter().map(setting).collect(),
+        design: training.design.clone(),
+        seed: training.seed,
+        levels: training.levels.clone(),
+        counts: v1::Counts {
+            values: counts.values,
+            gradients: counts.gradients,
+            failed: counts.failed,
+            final_mesh: counts.final_mesh,
+            direct_computations: counts.direct_computations,
+        },
+    }
+}
+
+fn decision(surrogate: &Surrogate) -> v1::Decision {
+    let quantiles = surrogate.decision.max_re_residuals.iter();
+    v1::Decision {
+        max_re_residuals: quantiles.map(|q| v1::Quantile { level: q.level, value: q.value }).collect(),
+        proportion_error: surrogate.decision.proportion_error,
+    }
+}
+
+fn certificates(certificates: &[Certificate]) -> Option<v1::Certificates> {
+    let certificate = |certificate: &Certificate| v1::Certificate {
+        seed: certificate.seed,
+        samples: certificate.samples,
+        scheme: certificate.scheme.clone(),
+        falsely_stable: certificate.falsely_stable,
+        falsely_unstable: certificate.falsely_unstable,
+        level: certificate.level,
+        lower: certificate.lower,
+        upper: certificate.upper,
+        problem_hash: certificate.problem_hash.clone(),
+    };
+    (!certificates.is_empty())
+        .then(|| v1::Certificates { certificates: certificates.iter().map(certificate).collect() })
+}

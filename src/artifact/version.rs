@@ -1,0 +1,38 @@
+//! Versions of the surrogate file and what this code can do with them.
+
+/// Major version written and read. It changes when older readers could misunderstand a file.
+pub const MAJOR: u16 = 1;
+
+/// Minor version written. It changes when sections, section versions or kinds are added, which older readers either skip or
+/// refuse by name.
+///
+/// * 0: eigenvalue outputs, uniform inputs, one element.
+pub const MINOR: u16 = 0;
+
+/// What this code can do with a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Compatibility {
+    /// Everything in the file is known.
+    Known,
+    /// The file may hold sections and kinds that this code does not know.
+    NewerMinor,
+    /// The file cannot be read.
+    OtherMajor,
+}
+
+/// Compares a file's version with this code's.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::artifact::version::{compatibility, Compatibility, MAJOR};
+/// assert_eq!(compatibility(MAJOR, 0), Compatibility::Known);
+/// assert_eq!(compatibility(MAJOR + 1, 0), Compatibility::OtherMajor);
+/// ```
+pub fn compatibility(major: u16, minor: u16) -> Compatibility {
+    match (major == MAJOR, minor <= MINOR) {
+        (false, _) => Compatibility::OtherMajor,
+        (true, true) => Compatibility::Known,
+        (true, false) => Compatibility::NewerMinor,
+    }
+}

@@ -1,0 +1,252 @@
+//! What can be typed.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+/// How likely is this machine to squeal, flutter or whirl, given what is not known about it?
+///
+/// pcc runs a model of the machine at some hundred well-chosen points, fits a sparse polynomial chaos expansion to each
+/// eigenvalue component, and writes it to a small file, the surrogate. Millions of samples of the surrogate then tell how
+/// often the machine is stable.
+#[derive(Debug, Parser)]
+#[command(name = "pcc", version, propagate_version = true, max_term_width = 110)]
+#[command(
+    after_help = "First steps:\n  pcc run                                the built-in clutch study, end to end\n  pcc build STUDY.toml                   build a surrogate from a study\n  pcc eval SURROGATE.pcc -n 1e6          stability proportion from the surrogate alone\n  pcc help COMMAND                       everything about one command\n\nExit codes: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130 interrupted."
+)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+
+    /// Print one JSON document on standard output and nothing else there
+    #[arg(long, global = true, display_order = 100)]
+    pub json: bool,
+
+    /// Number of threads [default: all processors]; results do not depend on it
+    #[arg(long, global = true, value_name = "N", display_order = 101)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Show no progress
+    #[arg(long, global = true, display_order = 102)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Build, evaluate and check a study end to end
+    ///
+    /// Builds the surrogate, samples it a million times and compares it with ten thousand direct computations at the same
+    /// points. Without STUDY it takes the built-in one: the clutch of the paper with all eight parameters uncertain.
+    Run(Run),
+
+    /// Build a surrogate from a study
+    ///
+    /// Runs the model on a nested Latin hypercube design that grows until every component is fitted, and writes index sets
+    /// and coefficients. The same study gives the same bytes on any number of threads.
+    Build(Build),
+
+    /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices
+    ///
+    /// Needs the surrogate file only. With --points it evaluates the points of a CSV file instead, whose columns are named
+    /// like the inputs, in physical units; other columns are ignored.
+    #[command(group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]))]
+    Eval(Eval),
+
+    /// Sample the model itself: the reference for surrogates
+    ///
+    /// Direct computations at the points that eval takes with the same seed, or at the points of a CSV file.
+    #[command(group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]))]
+    Reference(Reference),
+
+    /// Compare a surrogate with its model at the same points
+    ///
+    /// Errors of the stability proportion, of means and variances, and the share of points on whose stability the two
+    /// disagree. Refuses a study that asks another question than the surrogate answers.
+    Compare(Compare),
+
+    /// Show what is inside a surrogate file
+    Inspect(Inspect),
+
+    /// Convert a surrogate between binary (.pcc) and JSON (.json), without loss
+    Convert(Convert),
+
+    /// Print a completion script for a shell
+    ///
+    /// For example: pcc completions bash > ~/.local/share/bash-completion/completions/pcc
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Run {
+    /// Study file [default: the built-in clutch with 8 uncertain parameters]
+    pub study: Option<PathBuf>,
+
+    /// Folder for the surrogate
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub output: PathBuf,
+
+    /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for samples]
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Build {
+    /// Study file
+    pub study: PathBuf,
+
+    /// Surrogate file [default: <name of the study>.pcc in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Form of the file [default: by the ending of FILE, .json or other]
+    #[arg(long, value_enum)]
+    pub format: Option<FileFormat>,
+
+    /// Seed of the design instead of the study's
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+
+    /// Print the study with every default filled in, and build nothing
+    #[arg(long)]
+    pub show_study: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum FileFormat {
+    /// Compact and checksummed
+    Binary,
+    /// Readable
+    Json,
+}
+
+/// Random samples, or given points.
+#[derive(Debug, Args)]
+pub(super) struct Sampling {
+    /// Number of samples, as in 1000000 or 1e6
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count)]
+    pub samples: Option<u64>,
+
+    /// Seed of the samples
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+
+    /// CSV file of points to evaluate instead of samples
+    #[arg(long, value_name = "IN.csv", requires = "out")]
+    pub points: Option<PathBuf>,
+
+    /// CSV file for the results at these points: the point, re_k and im_k of each mode, max_re, stable
+    #[arg(long, value_name = "OUT.csv", requires = "points")]
+    pub out: Option<PathBuf>,
+
+    /// Accept points outside the inputs' domain, where a surrogate knows nothing
+    #[arg(long, requires = "points")]
+    pub extrapolate: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Eval {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    #[command(flatten)]
+    pub sampling: Sampling,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Reference {
+    /// Study file
+    pub study: PathBuf,
+
+    #[command(flatten)]
+    pub sampling: Sampling,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Compare {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Study it was built from
+    #[arg(long, value_name = "STUDY")]
+    pub study: PathBuf,
+
+    /// Number of points, as in 10000 or 1e4
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count)]
+    pub samples: u64,
+
+    /// Seed of the points
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+
+    /// Exit with code 1 if the relative error of the stability proportion is larger
+    #[arg(long, value_name = "PERCENT", value_parser = percentage)]
+    pub max_error: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Inspect {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Exit with code 1 if this evaluator does not find the values of the self-test
+    #[arg(long)]
+    pub check: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Convert {
+    /// Surrogate file to read, binary or JSON
+    pub input: PathBuf,
+
+    /// Surrogate file to write: JSON if it ends in .json, else binary
+    pub output: PathBuf,
+}
+
+/// A whole number from 1, also written like 1e6 or 1_000_000.
+fn sample_count(text: &str) -> Result<u64, String> {
+    /// Whole numbers up to here are exact in double precision.
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let plain: String = text.chars().filter(|&c| c != '_').collect();
+    let count = plain.parse::<u64>().ok().or_else(|| {
+        let number = plain.parse::<f64>().ok()?;
+        (number.fract() == 0.0 && (0.0..=EXACT).contains(&number)).then_some(number as u64)
+    });
+    match count {
+        Some(0) => Err("use at least 1".to_owned()),
+        Some(count) => Ok(count),
+        None => Err("use a whole number from 1, like 1000000 or 1e6".to_owned()),
+    }
+}
+
+fn percentage(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("use a number of percent from 0, like 0.5".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sample_counts_are_whole_numbers_from_one() {
+        assert_eq!(sample_count("1e6"), Ok(1_000_000));
+        assert_eq!(sample_count("1_000"), Ok(1000));
+        assert_eq!(sample_count("18446744073709551615"), Ok(u64::MAX));
+        for bad in ["0", "-1", "1.5", "nan", "inf", "1e300", "many", ""] {
+            assert!(sample_count(bad).is_err(), "{bad}");
+        }
+    }
+}

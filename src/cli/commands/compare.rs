@@ -1,0 +1,41 @@
+//! `pcc compare`
+
+use super::super::arguments::Compare;
+use super::super::{Context, Ending};
+use super::{interruptible, read_study, read_surrogate};
+use crate::reference::{ReferenceError, compare as compare_with_model};
+use crate::report::CompareReport;
+use crate::study::Study;
+use crate::surrogate::Surrogate;
+use std::time::Instant;
+
+pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow::Result<Ending> {
+    let surrogate = read_surrogate(&options.surrogate)?.surrogate;
+    let study = read_study(&options.study)?;
+    let report = judge(context, &surrogate, &study, options.samples, options.seed)?;
+    context.print(&report)?;
+    match options.max_error {
+        Some(limit) if report.relative_error_percent > limit => {
+            eprintln!(
+                "pcc: the proportion is off by {} %, more than --max-error {limit}",
+                report.relative_error_percent
+            );
+            Ok(Ending::CheckFailed)
+        }
+        _ => Ok(Ending::Done),
+    }
+}
+
+pub(super) fn judge(
+    context: &Context,
+    surrogate: &Surrogate,
+    study: &Study,
+    samples: u64,
+    seed: u64,
+) -> anyhow::Result<CompareReport> {
+    let start = Instant::now();
+    let comparison = compare_with_model(surrogate, study, samples, seed, &context.terminal)
+        .map_err(|error| interruptible(error.clone(), error == ReferenceError::Interrupted))?;
+    let runs = surrogate.training.counts.direct_computations;
+    Ok(CompareReport::new(&study.name, runs, &comparison, seed, start.elapsed().as_secs_f64()))
+}

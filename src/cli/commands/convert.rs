@@ -1,0 +1,35 @@
+//! `pcc convert`
+
+use super::super::arguments::Convert;
+use super::super::{Context, Ending};
+use super::read_surrogate;
+use crate::artifact::{Format, encode, save};
+use anyhow::bail;
+use serde::Serialize;
+use std::fmt;
+
+pub(in super::super) fn convert(context: &Context, options: &Convert) -> anyhow::Result<Ending> {
+    let artifact = read_surrogate(&options.input)?;
+    if let [kind, ..] = artifact.unknown_sections[..] {
+        bail!(
+            "{}: has a section of kind {kind} that this pcc does not know and would lose; use the pcc that wrote it",
+            options.input.display()
+        );
+    }
+    let bytes = encode(&artifact.surrogate, Format::of_path(&options.output))?;
+    save(&options.output, &bytes)?;
+    context.print(&Converted { file: options.output.display().to_string(), bytes: bytes.len() as u64 })?;
+    Ok(Ending::Done)
+}
+
+#[derive(Debug, Serialize)]
+struct Converted {
+    file: String,
+    bytes: u64,
+}
+
+impl fmt::Display for Converted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "written to {} ({} bytes)", self.file, crate::report::count(self.bytes))
+    }
+}

@@ -1,0 +1,88 @@
+//! The command line: arguments in, reports out, exit codes as promised.
+
+mod arguments;
+mod commands;
+mod points;
+mod progress;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use clap::error::ErrorKind;
+use progress::{Interrupt, Terminal};
+use serde::Serialize;
+use std::fmt::Display;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// How a command ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ending {
+    /// Done.
+    Done,
+    /// A check the user asked for did not hold.
+    CheckFailed,
+}
+
+/// The user pressed Ctrl-C.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("interrupted")]
+struct Interrupted;
+
+/// What every command is given.
+struct Context {
+    json: bool,
+    terminal: Terminal,
+}
+
+impl Context {
+    /// Prints a report: text for people, or one JSON document.
+    fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
+        let text = if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() };
+        match io::stdout().write_all(text.as_bytes()) {
+            // A reader like `head` that has seen enough is no error.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            result => Ok(result?),
+        }
+    }
+}
+
+/// Runs pcc with the arguments of the process: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130
+/// interrupted.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
+            return ExitCode::from(if asked { 0 } else { 2 });
+        }
+    };
+    match run(arguments) {
+        Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::CheckFailed) => ExitCode::from(1),
+        Err(error) if error.is::<Interrupted>() => {
+            eprintln!("pcc: interrupted; nothing was written");
+            ExitCode::from(130)
+        }
+        Err(error) => {
+            eprintln!("pcc: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> anyhow::Result<Ending> {
+    let threads = arguments.threads.map_or(0, |threads| threads.get());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let context = Context { json: arguments.json, terminal: Terminal::new(arguments.quiet, Interrupt::install()?) };
+    pool.install(|| match arguments.command {
+        Command::Run(options) => commands::run(&context, &options),
+        Command::Build(options) => commands::build(&context, &options),
+        Command::Eval(options) => commands::eval(&context, &options),
+        Command::Reference(options) => commands::reference(&context, &options),
+        Command::Compare(options) => commands::compare(&context, &options),
+        Command::Inspect(options) => commands::inspect(&context, &options),
+        Command::Convert(options) => commands::convert(&context, &options),
+        Command::Completions { shell } => commands::completions(shell),
+    })
+}

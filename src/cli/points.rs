@@ -1,0 +1,175 @@
+//! Points from a CSV file, results to another.
+
+use crate::artifact::save_with;
+use crate::input::{InputError, InputSpace};
+use nalgebra::Complex;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+use thiserror::Error;
+
+/// Points that are read, evaluated and written together: memory does not grow with the file.
+const GROUP: usize = 4096;
+
+/// Why points could not be read.
+#[derive(Debug, Error)]
+pub(super) enum PointsError {
+    #[error("{0}")]
+    Csv(#[from] csv::Error),
+    #[error("there is no column {name}; the file has {found}; add a column with the values of {name}")]
+    MissingColumn { name: String, found: String },
+    #[error("column {name} is there twice; remove one")]
+    RepeatedColumn { name: String },
+    #[error("row {row}, column {name}: {found:?} is not a number")]
+    NotANumber { row: u64, name: String, found: String },
+    #[error("row {row}: {source}; move the point, or pass --extrapolate to evaluate it all the same")]
+    Outside { row: u64, source: InputError },
+    #[error("there are no points below the header")]
+    Empty,
+    #[error("{path}: {source}")]
+    InFile { path: String, source: Box<PointsError> },
+}
+
+/// What points yield.
+pub(super) struct Evaluated {
+    /// Frequency ranks of the modes.
+    pub modes: Vec<usize>,
+    /// Per point, eigenvalues of the modes and max Re λ.
+    pub results: Vec<(Vec<Complex<f64>>, f64)>,
+}
+
+/// A CSV file with one column per input.
+pub(super) struct PointsFile<'a> {
+    path: String,
+    reader: csv::Reader<File>,
+    columns: Vec<usize>,
+    inputs: &'a InputSpace,
+    extrapolate: bool,
+}
+
+impl<'a> PointsFile<'a> {
+    /// Opens the file and finds the inputs' columns. Rows count from 1 below the header.
+    pub fn open(path: &Path, inputs: &'a InputSpace, extrapolate: bool) -> Result<Self, PointsError> {
+        let path = path.display().to_string();
+        Self::find_columns(&path, inputs, extrapolate)
+            .map_err(|source| PointsError::InFile { path, source: Box::new(source) })
+    }
+
+    fn find_columns(path: &str, inputs: &'a InputSpace, extrapolate: bool) -> Result<Self, PointsError> {
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
+        let header = reader.headers()?.clone();
+        let mut columns = Vec::new();
+        for name in inputs.names() {
+            let mut found = header.iter().enumerate().filter(|(_, column)| *column == name).map(|(at, _)| at);
+            columns.push(found.next().ok_or_else(|| PointsError::MissingColumn {
+                name: name.to_owned(),
+                found: header.iter().collect::<Vec<_>>().join(", "),
+            })?);
+            if found.next().is_some() {
+                return Err(PointsError::RepeatedColumn { name: name.to_owned() });
+            }
+        }
+        Ok(Self { path: path.to_owned(), reader, columns, inputs, extrapolate })
+    }
+
+    /// The next points in physical coordinates; none at the end of the file.
+    fn group(&mut self, first_row: u64) -> Result<Vec<Vec<f64>>, PointsError> {
+        let mut points = Vec::new();
+        let mut record = csv::StringRecord::new();
+        while points.len() < GROUP && self.reader.read_record(&mut record)? {
+            let row = first_row + points.len() as u64;
+            let mut point = Vec::with_capacity(self.columns.len());
+            for (&column, name) in self.columns.iter().zip(self.inputs.names()) {
+                let cell = record.get(column).unwrap_or_default();
+                let number = cell.parse::<f64>().ok().filter(|number| number.is_finite());
+                point.push(number.ok_or_else(|| PointsError::NotANumber {
+                    row,
+                    name: name.to_owned(),
+                    found: cell.to_owned(),
+                })?);
+            }
+            if !self.extrapolate {
+                self.inputs.check(&point).map_err(|source| PointsError::Outside { row, source })?;
+            }
+            points.push(point);
+        }
+        Ok(points)
+    }
+
+    /// Evaluates all points in groups and writes `path`: the point, re_k and im_k of each mode, max_re, stable. Returns
+    /// the number of points and of stable ones. Nothing is written if anything fails.
+    pub fn evaluate(
+        mut self,
+        path: &Path,
+        mut evaluate: impl FnMut(&[Vec<f64>]) -> anyhow::Result<Evaluated>,
+    ) -> anyhow::Result<(u64, u64)> {
+        let mut failure = None;
+        let (mut rows, mut stable) = (0, 0);
+        let written = save_with(path, |file| {
+            let mut writer = csv::Writer::from_writer(file);
+            loop {
+                let (points, found) = match self.evaluate_group(rows, &mut evaluate) {
+                    Ok(Some(group)) => group,
+                    Ok(None) => return writer.flush(),
+                    Err(error) => {
+                        failure = Some(error);
+                        return Err(io::Error::other("evaluation failed"));
+                    }
+                };
+                if rows == 0 {
+                    writer.write_record(header(self.inputs, &found.modes))?;
+                }
+                for (point, (eigenvalues, max_re)) in points.iter().zip(&found.results) {
+                    write_row(&mut writer, point, eigenvalues, *max_re)?;
+                    stable += u64::from(*max_re < 0.0);
+                }
+                rows += points.len() as u64;
+            }
+        });
+        match failure {
+            Some(error) => Err(error),
+            None => Ok(written.map(|()| (rows, stable))?),
+        }
+    }
+
+    /// The next points with their results, or `None` at the end of the file.
+    fn evaluate_group(
+        &mut self,
+        rows_before: u64,
+        evaluate: &mut impl FnMut(&[Vec<f64>]) -> anyhow::Result<Evaluated>,
+    ) -> anyhow::Result<Option<(Vec<Vec<f64>>, Evaluated)>> {
+        let group = self.group(rows_before + 1).and_then(|points| match (points.is_empty(), rows_before) {
+            (true, 0) => Err(PointsError::Empty),
+            _ => Ok(points),
+        });
+        let points =
+            group.map_err(|source| PointsError::InFile { path: self.path.clone(), source: Box::new(source) })?;
+        if points.is_empty() {
+            return Ok(None);
+        }
+        let found = evaluate(&points)?;
+        Ok(Some((points, found)))
+    }
+}
+
+fn header(inputs: &InputSpace, modes: &[usize]) -> Vec<String> {
+    let mut header: Vec<String> = inputs.names().map(str::to_owned).collect();
+    header.extend(modes.iter().flat_map(|mode| [format!("re_{mode}"), format!("im_{mode}")]));
+    header.extend(["max_re".to_owned(), "stable".to_owned()]);
+    header
+}
+
+/// Numbers by their shortest exact decimals.
+fn write_row<W: Write>(
+    writer: &mut csv::Writer<W>,
+    point: &[f64],
+    eigenvalues: &[Complex<f64>],
+    max_re: f64,
+) -> csv::Result<()> {
+    for value in point.iter().copied().chain(eigenvalues.iter().flat_map(|lambda| [lambda.re, lambda.im])) {
+        writer.write_field(format!("{value:?}"))?;
+    }
+    writer.write_field(format!("{max_re:?}"))?;
+    writer.write_field(if max_re < 0.0 { "1" } else { "0" })?;
+    writer.write_record(None::<&[u8]>)
+}

@@ -1,0 +1,69 @@
+//! Progress bars on a terminal, and Ctrl-C.
+
+use crate::progress::Observer;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::process;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether Ctrl-C was pressed.
+#[derive(Debug, Clone)]
+pub(super) struct Interrupt(Arc<AtomicBool>);
+
+impl Interrupt {
+    /// Watches for Ctrl-C: the first press asks the work to stop, the second ends the process.
+    pub fn install() -> anyhow::Result<Self> {
+        let flag = Arc::new(AtomicBool::new(false));
+        let seen = flag.clone();
+        ctrlc::set_handler(move || {
+            if seen.swap(true, Ordering::SeqCst) {
+                process::exit(130);
+            }
+        })?;
+        Ok(Self(flag))
+    }
+}
+
+/// Shows progress on standard error if that is a terminal.
+#[derive(Debug)]
+pub(super) struct Terminal {
+    bar: ProgressBar,
+    interrupt: Interrupt,
+}
+
+impl Terminal {
+    pub fn new(quiet: bool, interrupt: Interrupt) -> Self {
+        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let bar = ProgressBar::with_draw_target(Some(0), target);
+        if let Ok(style) = ProgressStyle::with_template("{msg:20} {wide_bar} {human_pos}/{human_len}  {eta}") {
+            bar.set_style(style);
+        }
+        Self { bar, interrupt }
+    }
+}
+
+impl Observer for Terminal {
+    fn begin(&self, stage: &str, total: u64) {
+        self.bar.reset();
+        self.bar.set_length(total);
+        self.bar.set_message(stage.to_owned());
+    }
+
+    fn advance(&self, steps: u64) {
+        self.bar.inc(steps);
+    }
+
+    fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn interrupted(&self) -> bool {
+        self.interrupt.0.load(Ordering::SeqCst)
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,128 @@
+//! What a build spent and how well each component is fitted.
+
+use super::table::{Align, Table, count};
+use crate::surrogate::{StopReason, Surrogate};
+use serde::Serialize;
+use std::fmt;
+
+/// The result of a build.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BuildReport {
+    /// Name of the study.
+    pub study: String,
+    /// Where the surrogate is.
+    pub file: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// Seed of the design.
+    pub seed: u64,
+    /// Every model run the build spent.
+    pub direct_computations: u64,
+    /// Number of points of each design level.
+    pub levels: Vec<u64>,
+    /// Fit of every component.
+    pub components: Vec<FitReport>,
+    /// Wall-clock time.
+    pub elapsed_seconds: f64,
+}
+
+/// Fit of one component.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FitReport {
+    /// Name.
+    pub name: String,
+    /// Degree p at which the search ended.
+    pub degree: u16,
+    /// Number of terms.
+    pub terms: usize,
+    /// R² on the design.
+    pub r2: Option<f64>,
+    /// Leave-one-out S².
+    pub s2: Option<f64>,
+    /// S² with the correction for small designs.
+    pub corrected_s2: Option<f64>,
+    /// Why the search ended.
+    pub stop: &'static str,
+}
+
+impl FitReport {
+    /// The fits of all components.
+    pub fn of(surrogate: &Surrogate) -> Vec<Self> {
+        let report = |component: &crate::spectrum::Component| {
+            let expansion = &surrogate.expansions[component.id];
+            Self {
+                name: component.name.clone(),
+                degree: expansion.degree,
+                terms: expansion.indices.len(),
+                r2: expansion.r2,
+                s2: expansion.s2,
+                corrected_s2: expansion.corrected_s2,
+                stop: expansion.stop.describe(),
+            }
+        };
+        surrogate.components().into_iter().map(report).collect()
+    }
+
+    /// A table of fits.
+    pub fn table(fits: &[Self]) -> Table {
+        let right = Align::Right;
+        let mut table = Table::new(&[
+            ("component", Align::Left),
+            ("degree", right),
+            ("terms", right),
+            ("R²", right),
+            ("S²", right),
+            ("S² corrected", right),
+            ("search ended at", Align::Left),
+        ]);
+        let share = |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{share:.5}"));
+        for fit in fits {
+            table.row([
+                fit.name.clone(),
+                fit.degree.to_string(),
+                fit.terms.to_string(),
+                share(fit.r2),
+                share(fit.s2),
+                share(fit.corrected_s2),
+                fit.stop.to_owned(),
+            ]);
+        }
+        table
+    }
+}
+
+impl BuildReport {
+    /// The report of a surrogate written to `file`.
+    pub fn new(surrogate: &Surrogate, file: String, bytes: u64, elapsed_seconds: f64) -> Self {
+        Self {
+            study: surrogate.provenance.study_name.clone(),
+            file,
+            bytes,
+            seed: surrogate.training.seed,
+            direct_computations: surrogate.training.counts.direct_computations,
+            levels: surrogate.training.levels.clone(),
+            components: FitReport::of(surrogate),
+            elapsed_seconds,
+        }
+    }
+}
+
+impl fmt::Display for BuildReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let levels: Vec<String> = self.levels.iter().map(u64::to_string).collect();
+        writeln!(
+            f,
+            "{}: {} model runs (design levels {}), {:.2} s, seed {}\n",
+            self.study,
+            count(self.direct_computations),
+            levels.join(" → "),
+            self.elapsed_seconds,
+            self.seed
+        )?;
+        writeln!(f, "{}", FitReport::table(&self.components))?;
+        if self.components.iter().any(|fit| fit.stop == StopReason::DesignExhausted.describe()) {
+            writeln!(f, "The design reached design.maximum before the fit was accurate; raise it for more.")?;
+        }
+        writeln!(f, "written to {} ({} bytes)", self.file, count(self.bytes))
+    }
+}

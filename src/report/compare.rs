@@ -1,0 +1,154 @@
+//! A surrogate judged against its model.
+
+use super::table::{Align, Table, count, significant};
+use crate::reference::Comparison;
+use serde::Serialize;
+use std::fmt;
+
+/// Surrogate and model on the same points.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CompareReport {
+    /// Name of the study.
+    pub study: String,
+    /// Number of points.
+    pub samples: u64,
+    /// Seed of the points.
+    pub seed: u64,
+    /// Model runs the surrogate was built from.
+    pub direct_computations: u64,
+    /// The model's share of stable points.
+    pub proportion_model: f64,
+    /// The surrogate's share of stable points.
+    pub proportion_surrogate: f64,
+    /// Relative error of the share.
+    pub relative_error_percent: f64,
+    /// Points on whose stability the two disagree.
+    pub misclassified_percent: f64,
+    /// Points that the surrogate calls stable and the model unstable.
+    pub falsely_stable: u64,
+    /// Points that the surrogate calls unstable and the model stable.
+    pub falsely_unstable: u64,
+    /// Largest error of the mean of Re λ among the modes: the paper's mean error.
+    pub largest_mean_error_percent: f64,
+    /// Largest error of the variance of Re λ among the modes: the paper's variance error.
+    pub largest_variance_error_percent: f64,
+    /// Every component.
+    pub components: Vec<ComponentErrors>,
+    /// Wall-clock time.
+    pub elapsed_seconds: f64,
+}
+
+/// Errors of one component.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComponentErrors {
+    /// Name.
+    pub name: String,
+    /// Mean of the model.
+    pub mean_model: f64,
+    /// Mean of the surrogate.
+    pub mean_surrogate: f64,
+    /// Relative error of the mean.
+    pub mean_error_percent: f64,
+    /// Variance of the model.
+    pub variance_model: f64,
+    /// Variance of the surrogate.
+    pub variance_surrogate: f64,
+    /// Relative error of the variance.
+    pub variance_error_percent: f64,
+}
+
+impl CompareReport {
+    /// The report of a comparison.
+    pub fn new(
+        study: &str,
+        direct_computations: u64,
+        comparison: &Comparison,
+        seed: u64,
+        elapsed_seconds: f64,
+    ) -> Self {
+        let components: Vec<ComponentErrors> = comparison
+            .components
+            .iter()
+            .map(|component| ComponentErrors {
+                name: component.name.clone(),
+                mean_model: component.model.mean(),
+                mean_surrogate: component.surrogate.mean(),
+                mean_error_percent: component.mean_error_percent(),
+                variance_model: component.model.variance(),
+                variance_surrogate: component.surrogate.variance(),
+                variance_error_percent: component.variance_error_percent(),
+            })
+            .collect();
+        let largest = |error: fn(&ComponentErrors) -> f64| {
+            components.iter().filter(|component| component.name.starts_with("re_")).map(error).fold(0.0, f64::max)
+        };
+        Self {
+            study: study.to_owned(),
+            samples: comparison.samples,
+            seed,
+            direct_computations,
+            proportion_model: comparison.proportion_model(),
+            proportion_surrogate: comparison.proportion_surrogate(),
+            relative_error_percent: comparison.relative_error_percent(),
+            misclassified_percent: comparison.misclassified_percent(),
+            falsely_stable: comparison.falsely_stable,
+            falsely_unstable: comparison.falsely_unstable,
+            largest_mean_error_percent: largest(|component| component.mean_error_percent),
+            largest_variance_error_percent: largest(|component| component.variance_error_percent),
+            components,
+            elapsed_seconds,
+        }
+    }
+}
+
+impl fmt::Display for CompareReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}: {} direct computations against the surrogate at the same points, {:.2} s, seed {}\n",
+            self.study,
+            count(self.samples),
+            self.elapsed_seconds,
+            self.seed
+        )?;
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        writeln!(f, "  stable, model          {}", percent(self.proportion_model))?;
+        writeln!(f, "  stable, surrogate      {}", percent(self.proportion_surrogate))?;
+        writeln!(f, "  relative error         {} %", significant(self.relative_error_percent, 3))?;
+        writeln!(
+            f,
+            "  misclassified          {} %   {} falsely stable, {} falsely unstable",
+            significant(self.misclassified_percent, 3),
+            count(self.falsely_stable),
+            count(self.falsely_unstable)
+        )?;
+        writeln!(
+            f,
+            "  largest error, Re λ    mean {} %, variance {} %\n",
+            significant(self.largest_mean_error_percent, 3),
+            significant(self.largest_variance_error_percent, 3)
+        )?;
+        let right = Align::Right;
+        let mut table = Table::new(&[
+            ("component", Align::Left),
+            ("mean, model", right),
+            ("surrogate", right),
+            ("error %", right),
+            ("variance, model", right),
+            ("surrogate", right),
+            ("error %", right),
+        ]);
+        for component in &self.components {
+            table.row([
+                component.name.clone(),
+                significant(component.mean_model, 6),
+                significant(component.mean_surrogate, 6),
+                significant(component.mean_error_percent, 3),
+                significant(component.variance_model, 5),
+                significant(component.variance_surrogate, 5),
+                significant(component.variance_error_percent, 3),
+            ]);
+        }
+        write!(f, "{table}")
+    }
+}

@@ -1,0 +1,331 @@
+//! The answer of `eval` and `reference`: stability and what engineers read of each mode.
+
+use super::table::{Align, Table, count, significant};
+use crate::spectrum::{ModeSummary, Output, Summary};
+use crate::statistics::{Interval, Moments};
+use crate::surrogate::{Quantile, Surrogate};
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::fmt::{self, Write};
+
+/// Statistics over samples, from a surrogate or from the model itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EvalReport {
+    /// Name of the study.
+    pub study: String,
+    /// Whether model or surrogate was sampled.
+    pub source: &'static str,
+    /// Number of samples.
+    pub samples: u64,
+    /// Seed of the samples.
+    pub seed: u64,
+    /// Number of stable samples, max Re λ < 0.
+    pub stable_samples: u64,
+    /// Their share.
+    pub stable_proportion: f64,
+    /// Wilson interval of the share: what the finite number of samples leaves open.
+    pub interval: Interval,
+    /// Spectral abscissa max Re λ, in 1/s.
+    pub max_re: Statistics,
+    /// What engineers read, per mode.
+    pub modes: Vec<ModeReport>,
+    /// Every component.
+    pub components: Vec<ComponentReport>,
+    /// Quantiles of the leave-one-out error of max Re λ, in 1/s, from the file; empty for a model.
+    pub max_re_residuals: Vec<QuantileReport>,
+    /// Wall-clock time.
+    pub elapsed_seconds: f64,
+}
+
+/// Moments and range.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Mean.
+    pub mean: f64,
+    /// Unbiased variance.
+    pub variance: f64,
+    /// Smallest sample.
+    pub minimum: f64,
+    /// Largest sample.
+    pub maximum: f64,
+}
+
+/// One mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeReport {
+    /// Frequency rank, from 1.
+    pub mode: usize,
+    /// Im λ/2π, in Hz.
+    pub frequency_hz: Statistics,
+    /// Re λ, in 1/s.
+    pub growth_rate: Statistics,
+    /// −Re λ/|λ|.
+    pub damping_ratio: Statistics,
+    /// Share of samples in which this mode is unstable, Re λ ≥ 0.
+    pub unstable_share: f64,
+}
+
+/// One component.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComponentReport {
+    /// Name.
+    pub name: String,
+    /// Statistics of the samples.
+    #[serde(flatten)]
+    pub samples: Statistics,
+    /// The same moments exactly, and Sobol' indices; absent for a model.
+    #[serde(flatten)]
+    pub analysis: Option<Analysis>,
+}
+
+/// What follows from the coefficients without sampling.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Analysis {
+    /// Mean from the coefficients.
+    pub mean_from_coefficients: f64,
+    /// Variance from the coefficients.
+    pub variance_from_coefficients: f64,
+    /// Sobol' indices per input; empty if the component does not vary.
+    pub sobol: Vec<SobolReport>,
+}
+
+/// Sobol' indices of one input.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SobolReport {
+    /// Name of the input.
+    pub input: String,
+    /// First order.
+    pub first: f64,
+    /// Total.
+    pub total: f64,
+}
+
+/// A quantile.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct QuantileReport {
+    /// Probability to be undercut.
+    pub level: f64,
+    /// Its value.
+    pub value: f64,
+}
+
+/// Confidence level of the printed intervals.
+const LEVEL: f64 = 0.95;
+
+impl EvalReport {
+    /// The report of a surrogate's samples.
+    pub fn of_surrogate(surrogate: &Surrogate, summary: &Summary, seed: u64, elapsed_seconds: f64) -> Self {
+        let name = &surrogate.provenance.study_name;
+        let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, seed, elapsed_seconds);
+        for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
+            component.analysis = Some(analysis);
+        }
+        let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
+        report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
+        report
+    }
+
+    /// The report of direct computations.
+    pub fn of_model(study: &str, outputs: &[Output], summary: &Summary, seed: u64, elapsed_seconds: f64) -> Self {
+        Self::new(study, "model", outputs, summary, seed, elapsed_seconds)
+    }
+
+    fn new(
+        study: &str,
+        source: &'static str,
+        outputs: &[Output],
+        summary: &Summary,
+        seed: u64,
+        elapsed_seconds: f64,
+    ) -> Self {
+        let stable = summary.stable_proportion();
+        let ranks = outputs.iter().flat_map(|output| output.modes.iter().copied());
+        let mut names: Vec<_> = outputs.iter().flat_map(|output| &output.components).collect();
+        names.sort_by_key(|component| component.id);
+        Self {
+            study: study.to_owned(),
+            source,
+            samples: stable.samples,
+            seed,
+            stable_samples: stable.hits,
+            stable_proportion: stable.value(),
+            interval: stable.wilson(LEVEL),
+            max_re: Statistics::of(&summary.max_re, 1.0),
+            modes: ranks.zip(&summary.modes).map(|(mode, part)| mode_report(mode, part, stable.samples)).collect(),
+            components: names
+                .into_iter()
+                .zip(&summary.components)
+                .map(|(component, moments)| ComponentReport {
+                    name: component.name.clone(),
+                    samples: Statistics::of(moments, 1.0),
+                    analysis: None,
+                })
+                .collect(),
+            max_re_residuals: Vec::new(),
+            elapsed_seconds,
+        }
+    }
+}
+
+impl Statistics {
+    fn of(moments: &Moments, unit: f64) -> Self {
+        Self {
+            mean: moments.mean() * unit,
+            variance: moments.variance() * unit * unit,
+            minimum: moments.minimum() * unit,
+            maximum: moments.maximum() * unit,
+        }
+    }
+
+    fn cells(&self) -> [String; 4] {
+        [self.mean, self.variance.sqrt(), self.minimum, self.maximum].map(|value| significant(value, 5))
+    }
+}
+
+fn mode_report(mode: usize, summary: &ModeSummary, samples: u64) -> ModeReport {
+    ModeReport {
+        mode,
+        frequency_hz: Statistics::of(&summary.angular_frequency, 1.0 / TAU),
+        growth_rate: Statistics::of(&summary.growth_rate, 1.0),
+        damping_ratio: Statistics::of(&summary.damping_ratio, 1.0),
+        unstable_share: summary.unstable as f64 / samples as f64,
+    }
+}
+
+fn analyses(surrogate: &Surrogate) -> Vec<Analysis> {
+    let sobol = |id: usize| {
+        let Some(indices) = surrogate.expansions[id].sobol_indices() else { return Vec::new() };
+        let shares = indices.first.into_iter().zip(indices.total);
+        let report =
+            |(input, (first, total)): (&str, (f64, f64))| SobolReport { input: input.to_owned(), first, total };
+        surrogate.inputs.names().zip(shares).map(report).collect()
+    };
+    let moments = surrogate.moments().into_iter().enumerate();
+    moments
+        .map(|(id, (mean, variance))| Analysis {
+            mean_from_coefficients: mean,
+            variance_from_coefficients: variance,
+            sobol: sobol(id),
+        })
+        .collect()
+}
+
+impl fmt::Display for EvalReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rate = self.samples as f64 / self.elapsed_seconds.max(1e-9);
+        writeln!(
+            f,
+            "{}: {} samples of the {} in {:.2} s ({} per second), seed {}\n",
+            self.study,
+            count(self.samples),
+            self.source,
+            self.elapsed_seconds,
+            significant(rate, 2),
+            self.seed
+        )?;
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        let Interval { lower, upper, level } = self.interval;
+        writeln!(f, "  stable                 {}", percent(self.stable_proportion))?;
+        writeln!(
+            f,
+            "  {:.0} % interval          {} to {}   from sampling alone",
+            100.0 * level,
+            percent(lower),
+            percent(upper)
+        )?;
+        writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
+        if let Some((low, high)) = self.central_residuals() {
+            let [low, high] = [low, high].map(|value| significant(value, 3));
+            writeln!(f, "  max Re λ is off by     {low} to {high} 1/s at 95 % of the points left out of the fit")?;
+        }
+        writeln!(f, "\n{}", self.mode_table())?;
+        write!(f, "{}", self.component_table())?;
+        let sobol = self.sobol_table();
+        if sobol.is_empty() { Ok(()) } else { write!(f, "\n{sobol}") }
+    }
+}
+
+impl EvalReport {
+    /// The residual quantiles at 2.5 and 97.5 %.
+    fn central_residuals(&self) -> Option<(f64, f64)> {
+        let at = |level: f64| self.max_re_residuals.iter().find(|quantile| quantile.level == level).map(|q| q.value);
+        at(0.025).zip(at(0.975))
+    }
+
+    fn mode_table(&self) -> Table {
+        let right = Align::Right;
+        let mut table = Table::new(&[
+            ("mode", Align::Left),
+            ("", Align::Left),
+            ("mean", right),
+            ("std. dev.", right),
+            ("minimum", right),
+            ("maximum", right),
+            ("unstable", right),
+        ]);
+        for mode in &self.modes {
+            let unstable = format!("{:.2} %", 100.0 * mode.unstable_share);
+            let lines = [
+                (mode.mode.to_string(), "frequency, Hz", &mode.frequency_hz, unstable),
+                (String::new(), "growth rate, 1/s", &mode.growth_rate, String::new()),
+                (String::new(), "damping ratio", &mode.damping_ratio, String::new()),
+            ];
+            for (rank, what, statistics, unstable) in lines {
+                let [mean, deviation, minimum, maximum] = statistics.cells();
+                table.row([rank, what.to_owned(), mean, deviation, minimum, maximum, unstable]);
+            }
+        }
+        table
+    }
+
+    fn component_table(&self) -> Table {
+        let right = Align::Right;
+        let mut columns = vec![
+            ("component", Align::Left),
+            ("mean", right),
+            ("std. dev.", right),
+            ("minimum", right),
+            ("maximum", right),
+        ];
+        let exact = self.components.iter().any(|component| component.analysis.is_some());
+        if exact {
+            columns.extend([("mean, exact", right), ("std. dev., exact", right)]);
+        }
+        let mut table = Table::new(&columns);
+        for component in &self.components {
+            let mut row = vec![component.name.clone()];
+            row.extend(component.samples.cells());
+            if let Some(analysis) = &component.analysis {
+                row.push(significant(analysis.mean_from_coefficients, 5));
+                row.push(significant(analysis.variance_from_coefficients.sqrt(), 5));
+            }
+            table.row(row);
+        }
+        table
+    }
+
+    /// First-order and total indices, one column per component; empty without coefficients.
+    fn sobol_table(&self) -> String {
+        let shown: Vec<(&str, &[SobolReport])> = self
+            .components
+            .iter()
+            .filter_map(|component| Some((component.name.as_str(), component.analysis.as_ref()?.sobol.as_slice())))
+            .filter(|(_, sobol)| !sobol.is_empty())
+            .collect();
+        let Some((_, first)) = shown.first() else { return String::new() };
+        let mut columns = vec![("Sobol' index", Align::Left)];
+        columns.extend(shown.iter().map(|(name, _)| (*name, Align::Right)));
+        let mut table = Table::new(&columns);
+        for (j, input) in first.iter().enumerate() {
+            let mut row = vec![input.input.clone()];
+            row.extend(shown.iter().map(|(_, sobol)| format!("{:.4} / {:.4}", sobol[j].first, sobol[j].total)));
+            table.row(row);
+        }
+        let mut text = table.to_string();
+        let _ = writeln!(
+            text,
+            "first order / total: the share of a component's variance that an input causes alone / in all"
+        );
+        text
+    }
+}

@@ -1,0 +1,232 @@
+//! What is inside a surrogate file.
+
+use super::build::FitReport;
+use super::table::{Align, Table, count, significant};
+use crate::artifact::{Artifact, Format};
+use crate::eval::Plan;
+use crate::input::Marginal;
+use crate::surrogate::{Certificate, Setting, SettingValue};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The content of a surrogate file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InspectReport {
+    /// Where the file is.
+    pub file: String,
+    /// Its size.
+    pub bytes: u64,
+    /// Binary or JSON.
+    pub encoding: &'static str,
+    /// Version of the format, as in 1.0.
+    pub format: String,
+    /// Version of pcc that built it.
+    pub tool_version: String,
+    /// Name of the study.
+    pub study: String,
+    /// Hash of model, constants, inputs and spectrum.
+    pub problem_hash: String,
+    /// Hash of the whole study.
+    pub study_hash: String,
+    /// Hash of what determines the answers.
+    pub content_id: String,
+    /// Kinds of optional sections this version does not know.
+    pub unknown_sections: Vec<u16>,
+    /// Every model run the build spent.
+    pub direct_computations: u64,
+    /// Runs that failed.
+    pub failed_runs: u64,
+    /// Fitting method.
+    pub method: String,
+    /// Its settings.
+    pub settings: BTreeMap<String, serde_json::Value>,
+    /// Kind of design.
+    pub design: String,
+    /// Number of points of each design level.
+    pub levels: Vec<u64>,
+    /// Seed of the design.
+    pub seed: u64,
+    /// Frequency ranks of the modes it carries.
+    pub modes: Vec<usize>,
+    /// The uncertain inputs.
+    pub inputs: Vec<InputReport>,
+    /// Fit of every component.
+    pub components: Vec<FitReport>,
+    /// Terms after merging all components, and operations per evaluation.
+    pub plan: PlanReport,
+    /// Largest relative difference between the self-test and this evaluator.
+    pub self_test_difference: f64,
+    /// Largest difference allowed.
+    pub self_test_tolerance: f64,
+    /// Number of certificates.
+    pub certificates: Vec<CertificateReport>,
+}
+
+/// One input.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InputReport {
+    /// Name.
+    pub name: String,
+    /// Distribution.
+    pub distribution: &'static str,
+    /// Lower bound.
+    pub lower: f64,
+    /// Upper bound.
+    pub upper: f64,
+    /// Polynomial family.
+    pub family: &'static str,
+}
+
+/// Cost of one evaluation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PlanReport {
+    /// Terms after merging all components.
+    pub terms: usize,
+    /// Floating-point operations per point.
+    pub flops: usize,
+}
+
+/// One certificate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CertificateReport {
+    /// Seed of its points.
+    pub seed: u64,
+    /// Number of fresh model runs.
+    pub samples: u64,
+    /// Confidence level.
+    pub level: f64,
+    /// Lower end of the bound on the stability proportion.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+}
+
+impl InspectReport {
+    /// The report of a file of so many bytes.
+    pub fn new(artifact: &Artifact, file: String, bytes: u64) -> Self {
+        let surrogate = &artifact.surrogate;
+        let plan = Plan::new(surrogate);
+        Self {
+            file,
+            bytes,
+            encoding: match artifact.format {
+                Format::Binary => "binary",
+                Format::Json => "json",
+            },
+            format: format!("{}.{}", artifact.version.0, artifact.version.1),
+            tool_version: surrogate.provenance.tool_version.clone(),
+            study: surrogate.provenance.study_name.clone(),
+            problem_hash: surrogate.provenance.problem_hash.clone(),
+            study_hash: surrogate.provenance.study_hash.clone(),
+            content_id: artifact.content_id.clone(),
+            unknown_sections: artifact.unknown_sections.clone(),
+            direct_computations: surrogate.training.counts.direct_computations,
+            failed_runs: surrogate.training.counts.failed,
+            method: surrogate.training.method.clone(),
+            settings: surrogate.training.settings.iter().map(setting).collect(),
+            design: surrogate.training.design.clone(),
+            levels: surrogate.training.levels.clone(),
+            seed: surrogate.training.seed,
+            modes: surrogate.modes(),
+            inputs: surrogate.inputs.inputs().iter().map(input).collect(),
+            components: FitReport::of(surrogate),
+            plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
+            self_test_difference: surrogate.self_test_difference(),
+            self_test_tolerance: surrogate.self_test.tolerance,
+            certificates: surrogate.certificates.iter().map(certificate).collect(),
+        }
+    }
+
+    /// Whether the evaluator finds what the self-test expects.
+    pub fn self_test_holds(&self) -> bool {
+        self.self_test_difference <= self.self_test_tolerance
+    }
+}
+
+fn setting(setting: &Setting) -> (String, serde_json::Value) {
+    let value = match &setting.value {
+        SettingValue::Integer(value) => (*value).into(),
+        SettingValue::Number(value) => (*value).into(),
+        SettingValue::Text(value) => value.clone().into(),
+        SettingValue::Flag(value) => (*value).into(),
+    };
+    (setting.key.clone(), value)
+}
+
+fn input(input: &crate::input::Input) -> InputReport {
+    let Marginal::Uniform(uniform) = &input.marginal;
+    InputReport {
+        name: input.name.clone(),
+        distribution: "uniform",
+        lower: uniform.lower(),
+        upper: uniform.upper(),
+        family: input.marginal.family().name(),
+    }
+}
+
+fn certificate(certificate: &Certificate) -> CertificateReport {
+    CertificateReport {
+        seed: certificate.seed,
+        samples: certificate.samples,
+        level: certificate.level,
+        lower: certificate.lower,
+        upper: certificate.upper,
+    }
+}
+
+impl fmt::Display for InspectReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}: {} surrogate, format {}, {} bytes\n",
+            self.file,
+            self.encoding,
+            self.format,
+            count(self.bytes)
+        )?;
+        let levels: Vec<String> = self.levels.iter().map(u64::to_string).collect();
+        let settings: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        let modes: Vec<String> = self.modes.iter().map(usize::to_string).collect();
+        let test = if self.self_test_holds() { "holds" } else { "FAILS" };
+        let facts = [
+            ("study", self.study.clone()),
+            ("built by", format!("pcc {}", self.tool_version)),
+            ("model runs", format!("{}, {} failed", count(self.direct_computations), self.failed_runs)),
+            ("design", format!("{}, levels {}, seed {}", self.design, levels.join(" → "), self.seed)),
+            ("method", format!("{}: {}", self.method, settings.join(", "))),
+            ("modes", format!("{} by frequency rank", modes.join(", "))),
+            ("evaluation", format!("{} terms, {} operations per point", self.plan.terms, self.plan.flops)),
+            ("self-test", format!("{test}: largest difference {}", significant(self.self_test_difference, 2))),
+            ("problem hash", self.problem_hash.clone()),
+            ("content id", self.content_id.clone()),
+        ];
+        for (name, fact) in facts {
+            writeln!(f, "  {name:<14} {fact}")?;
+        }
+        for certificate in &self.certificates {
+            let CertificateReport { samples, level, lower, upper, seed } = certificate;
+            writeln!(
+                f,
+                "  {:<14} {lower} to {upper} at level {level}, {samples} model runs, seed {seed}",
+                "certificate"
+            )?;
+        }
+        for kind in &self.unknown_sections {
+            writeln!(f, "  {:<14} of kind {kind}, skipped: this pcc does not know it", "section")?;
+        }
+        let right = Align::Right;
+        let mut inputs = Table::new(&[
+            ("input", Align::Left),
+            ("distribution", Align::Left),
+            ("lower", right),
+            ("upper", right),
+            ("polynomials", Align::Left),
+        ]);
+        for input in &self.inputs {
+            let (lower, upper) = (significant(input.lower, 6), significant(input.upper, 6));
+            inputs.row([&input.name, input.distribution, &lower, &upper, input.family]);
+        }
+        write!(f, "\n{inputs}\n{}", FitReport::table(&self.components))
+    }
+}

@@ -1,0 +1,108 @@
+//! Aligned text tables and numbers for people.
+
+use std::fmt;
+
+/// How a column is aligned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// Words.
+    Left,
+    /// Numbers.
+    Right,
+}
+
+/// A table of text cells.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::report::{Align, Table};
+/// let mut table = Table::new(&[("mode", Align::Left), ("growth 1/s", Align::Right)]);
+/// table.row(["3", "-11.7"]);
+/// assert_eq!(table.to_string(), "mode  growth 1/s\n3          -11.7\n");
+/// ```
+#[derive(Debug, Clone)]
+pub struct Table {
+    aligns: Vec<Align>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these column heads.
+    pub fn new(columns: &[(&str, Align)]) -> Self {
+        let heads = columns.iter().map(|(head, _)| (*head).to_owned()).collect();
+        Self { aligns: columns.iter().map(|(_, align)| *align).collect(), rows: vec![heads] }
+    }
+
+    /// Adds a row; missing cells are empty.
+    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
+        row.resize(self.aligns.len(), String::new());
+        self.rows.push(row);
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let width = |k: usize| self.rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..self.aligns.len()).map(width).collect();
+        for row in &self.rows {
+            let mut line = String::new();
+            for ((cell, &width), align) in row.iter().zip(&widths).zip(&self.aligns) {
+                if !line.is_empty() {
+                    line.push_str("  ");
+                }
+                match align {
+                    Align::Left => line.push_str(&format!("{cell:<width$}")),
+                    Align::Right => line.push_str(&format!("{cell:>width$}")),
+                }
+            }
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// `value` with so many significant digits; powers of ten only for very large and very small numbers.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::report::significant;
+/// assert_eq!(significant(3641.65497, 5), "3641.7");
+/// assert_eq!(significant(-0.00012345, 3), "-0.000123");
+/// assert_eq!(significant(1.5e-9, 3), "1.50e-9");
+/// ```
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-5..9).contains(&exponent) {
+        return format!("{value:.*e}", digits.saturating_sub(1));
+    }
+    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// A count with thin groups of three digits: 1 000 000.
+///
+/// # Examples
+///
+/// ```
+/// assert_eq!(pcc::report::count(1_234_567), "1 234 567");
+/// ```
+pub fn count(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            grouped.push(' ');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
