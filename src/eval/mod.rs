@@ -5,7 +5,9 @@
 mod monte_carlo;
 mod plan;
 mod points;
+mod self_test;
 
 pub use monte_carlo::{EvalError, monte_carlo};
 pub use plan::{LANES, Plan, Workspace};
 pub use points::evaluate_points;
+pub use self_test::self_test_difference;

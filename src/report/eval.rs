@@ -182,6 +182,12 @@ impl Statistics {
     }
 }
 
+/// A rate as a count with two significant digits: 6 600 000.
+fn rounded(rate: f64) -> String {
+    let unit = 10f64.powf(rate.max(10.0).log10().floor() - 1.0);
+    count(((rate / unit).round() * unit) as u64)
+}
+
 fn mode_report(mode: usize, summary: &ModeSummary, samples: u64) -> ModeReport {
     ModeReport {
         mode,
@@ -220,7 +226,7 @@ impl fmt::Display for EvalReport {
             count(self.samples),
             self.source,
             self.elapsed_seconds,
-            significant(rate, 2),
+            rounded(rate),
             self.seed
         )?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);

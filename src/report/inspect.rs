@@ -3,7 +3,7 @@
 use super::build::FitReport;
 use super::table::{Align, Table, count, significant};
 use crate::artifact::{Artifact, Format};
-use crate::eval::Plan;
+use crate::eval::{Plan, self_test_difference};
 use crate::input::Marginal;
 use crate::surrogate::{Certificate, Setting, SettingValue};
 use serde::Serialize;
@@ -132,7 +132,7 @@ impl InspectReport {
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
-            self_test_difference: surrogate.self_test_difference(),
+            self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
             certificates: surrogate.certificates.iter().map(certificate).collect(),
         }

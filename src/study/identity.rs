@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{ModelSettings, Study};
+use super::{FitMethod, ModelSettings, Study};
 use crate::digest::sha256;
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
@@ -13,7 +13,21 @@ pub(super) fn problem_hash(study: &Study) -> String {
 }
 
 pub(super) fn study_hash(study: &Study) -> String {
-    sha256(study.to_toml().as_bytes())
+    let mut text = problem(study);
+    let Study { name, seed, design, fit, .. } = study;
+    let _ = writeln!(text, "name {name}\nseed {seed}");
+    let _ = writeln!(text, "design {} {} {} {}", design.kind.name(), design.initial, design.step, design.maximum);
+    let _ = writeln!(
+        text,
+        "fit {} {} {:?} {:?} {:?} {:?}",
+        FitMethod::Stepwise.name(),
+        fit.max_degree,
+        fit.q_norm,
+        fit.s2_target,
+        fit.epsilon_forward,
+        fit.epsilon_backward
+    );
+    sha256(text.as_bytes())
 }
 
 /// What has one true answer, as text, one fact a line: constants with the nominal values that the study left alone,

@@ -38,7 +38,7 @@ impl Expansion {
 
     fn squares(&self, select: impl Fn(&[u16]) -> bool) -> f64 {
         let terms = self.indices.iter().zip(&self.coefficients);
-        terms.filter(|(alpha, _)| select(alpha)).map(|(_, c)| c * c).sum()
+        terms.filter(|(alpha, _)| select(alpha)).fold(0.0, |sum, (_, c)| sum + c * c)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Evaluation point by point: the plain reference for the fast evaluator, and the check of a file against itself.
+//! Evaluation point by point: the plain reference for the fast evaluator, and the values a self-test expects.
 
 use super::{SelfTest, Surrogate};
 use nalgebra::Complex;
@@ -53,17 +53,5 @@ impl Surrogate {
             points.iter().map(|point| self.evaluate(&self.inputs.standardized(point))).collect();
         let max_re = components.iter().map(|values| self.max_re(values)).collect();
         SelfTest { points, components, max_re, tolerance: SELF_TEST_TOLERANCE }
-    }
-
-    /// The largest difference between what this code evaluates and what the self-test expects, relative to
-    /// max(1, |expected|).
-    pub fn self_test_difference(&self) -> f64 {
-        let found = self.make_self_test(self.self_test.points.clone());
-        let expected = &self.self_test;
-        let pairs = found.components.iter().flatten().zip(expected.components.iter().flatten());
-        pairs
-            .chain(found.max_re.iter().zip(&expected.max_re))
-            .map(|(found, expected)| (found - expected).abs() / expected.abs().max(1.0))
-            .fold(0.0, f64::max)
     }
 }

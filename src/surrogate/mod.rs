@@ -1,9 +1,11 @@
 //! The surrogate: an immutable set of expansions with everything needed to use it and to judge it.
 
+mod agreement;
 mod analysis;
 mod evaluate;
 mod records;
 
+pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
 pub use analysis::SobolIndices;
 pub use records::{
     Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
