@@ -55,8 +55,11 @@ fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
 
 /// Code without comments and without what only tests compile.
 fn code(path: &Path) -> String {
+    if path.file_name().is_some_and(|name| name == "tests.rs") {
+        return String::new();
+    }
     let text = fs::read_to_string(path).unwrap();
-    let product = text.split("#[cfg(test)]\nmod tests").next().unwrap();
+    let product = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
     product.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 

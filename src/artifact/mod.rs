@@ -12,6 +12,8 @@ mod json;
 mod meaning;
 mod save;
 mod schema;
+#[cfg(test)]
+mod tests;
 mod to_v1;
 pub mod v1;
 pub mod version;
