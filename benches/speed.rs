@@ -1,1 +1,68 @@
-fn main() {}
+//! Speed of what takes time: one direct computation, one build, a million samples.
+//!
+//! `cargo bench` prints a line each; throughput is in model runs or samples per second, on all processors for builds and
+//! samples and on one for the model.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use pcc::artifact::decode;
+use pcc::eval::monte_carlo;
+use pcc::input::random_point;
+use pcc::model::Model;
+use pcc::progress::Silent;
+use pcc::random::Purpose;
+use pcc::study::Study;
+use std::hint::black_box;
+
+const STUDY: &str = include_str!("../surrogates/clutch-r8-eigenvalues.toml");
+const SURROGATE: &[u8] = include_bytes!("../surrogates/clutch-r8-eigenvalues.pcc");
+const SAMPLES: u64 = 1_000_000;
+
+fn study() -> Study {
+    Study::from_toml(STUDY).expect("the shipped study is valid")
+}
+
+fn direct_computation(criterion: &mut Criterion) {
+    let study = study();
+    let model: Box<dyn Model> = study.model().expect("the shipped study fits its model");
+    let points: Vec<Vec<f64>> = (0..1000)
+        .map(|index| {
+            let mut standardized = vec![0.0; study.inputs.dimension()];
+            random_point(&study.inputs, 1, Purpose::Evaluation, index, &mut standardized);
+            study.inputs.physical(&standardized)
+        })
+        .collect();
+    let mut group = criterion.benchmark_group("model");
+    group.throughput(Throughput::Elements(points.len() as u64));
+    group.bench_function("1000 direct computations, one core", |bencher| {
+        bencher.iter(|| {
+            for point in &points {
+                black_box(model.eigenvalues(black_box(point)).expect("the clutch converges"));
+            }
+        });
+    });
+    group.finish();
+}
+
+fn build(criterion: &mut Criterion) {
+    let study = study();
+    let mut group = criterion.benchmark_group("build");
+    group.sample_size(10);
+    group.bench_function("clutch-r8-eigenvalues, all cores", |bencher| {
+        bencher.iter(|| pcc::build::build(black_box(&study), &Silent).expect("the shipped study builds"));
+    });
+    group.finish();
+}
+
+fn evaluation(criterion: &mut Criterion) {
+    let surrogate = decode(SURROGATE).expect("the shipped surrogate is valid").surrogate;
+    let mut group = criterion.benchmark_group("eval");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements(SAMPLES));
+    group.bench_function("a million samples of clutch-r8-eigenvalues, all cores", |bencher| {
+        bencher.iter(|| monte_carlo(black_box(&surrogate), SAMPLES, 1, &Silent).expect("samples are asked for"));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, direct_computation, build, evaluation);
+criterion_main!(benches);

@@ -100,7 +100,7 @@ pub enum ReadError {
         bytes: usize,
     },
     /// JSON that is not a surrogate.
-    #[error("is not a surrogate in JSON: {message}{}", newer(*.minor))]
+    #[error("is not a surrogate in JSON: {message}{}; give a file that pcc build wrote", newer(*.minor))]
     Json {
         /// What the parser said, with line and column.
         message: String,

@@ -17,6 +17,13 @@ pub(super) struct Evaluations<'a> {
     mode_count: ModeCount,
 }
 
+/// One point with its spectrum.
+struct Run {
+    physical: Vec<f64>,
+    spectrum: Spectrum,
+    modes: Vec<usize>,
+}
+
 impl<'a> Evaluations<'a> {
     pub fn new(study: &'a Study) -> Self {
         Self {
@@ -35,30 +42,33 @@ impl<'a> Evaluations<'a> {
         self.design.grow_to(size);
         let samples = self.samples();
         observer.begin("model runs", (size - old) as u64);
-        let runs: Result<Vec<(Vec<f64>, Spectrum)>, BuildError> = (old..size)
+        let runs: Result<Vec<Run>, BuildError> = (old..size)
             .into_par_iter()
             .map(|i| {
                 if observer.interrupted() {
                     return Err(BuildError::Interrupted);
                 }
-                let physical = inputs.physical(samples.point(i));
-                let spectrum = direct_computation(model, inputs, &physical)?;
+                let run = self.run(model, inputs.physical(samples.point(i)))?;
                 observer.advance(1);
-                Ok((physical, spectrum))
+                Ok(run)
             })
             .collect();
         observer.finish();
-        for (physical, spectrum) in runs? {
-            let count = self.mode_count.check(inputs, &physical, &spectrum)?;
-            self.modes = self
-                .study
-                .spectrum
-                .modes
-                .ranks(count)
-                .map_err(|source| RunError::Spectrum { point: inputs.describe(&physical), source })?;
+        for Run { physical, spectrum, modes } in runs? {
+            self.mode_count.check(inputs, &physical, &spectrum)?;
+            self.modes = modes;
             self.spectra.push(spectrum);
         }
         Ok(())
+    }
+
+    /// One direct computation, with the ranks of the study's modes at this point.
+    fn run(&self, model: &dyn Model, physical: Vec<f64>) -> Result<Run, RunError> {
+        let inputs = &self.study.inputs;
+        let spectrum = direct_computation(model, inputs, &physical)?;
+        let modes = self.study.spectrum.modes.ranks(spectrum.count());
+        let modes = modes.map_err(|cause| RunError::Spectrum { point: inputs.describe(&physical), cause })?;
+        Ok(Run { physical, spectrum, modes })
     }
 
     /// The points in standardized coordinates.
@@ -82,9 +92,9 @@ impl<'a> Evaluations<'a> {
         let target = self.study.spectrum.target;
         let mut components = Vec::new();
         for (spectrum, point) in self.spectra.iter().zip(self.samples().points()) {
-            let values = target.components(&self.modes, spectrum).map_err(|source| {
+            let values = target.components(&self.modes, spectrum).map_err(|cause| {
                 let physical = self.study.inputs.physical(point);
-                RunError::Spectrum { point: self.study.inputs.describe(&physical), source }
+                RunError::Spectrum { point: self.study.inputs.describe(&physical), cause }
             })?;
             components.resize_with(values.len(), Vec::new);
             for (component, value) in components.iter_mut().zip(values) {

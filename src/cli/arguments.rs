@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// eigenvalue component, and writes it to a small file, the surrogate. Millions of samples of the surrogate then tell how
 /// often the machine is stable.
 #[derive(Debug, Parser)]
-#[command(name = "pcc", version, propagate_version = true, max_term_width = 110)]
+#[command(name = "pcc", version, max_term_width = 110)]
 #[command(
     after_help = "First steps:\n  pcc run                                the built-in clutch study, end to end\n  pcc build STUDY.toml                   build a surrogate from a study\n  pcc eval SURROGATE.pcc -n 1e6          stability proportion from the surrogate alone\n  pcc help COMMAND                       everything about one command\n\nExit codes: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130 interrupted."
 )]

@@ -14,20 +14,26 @@ const GROUP: usize = 4096;
 /// Why points could not be read.
 #[derive(Debug, Error)]
 pub(super) enum PointsError {
-    #[error("{0}")]
-    Csv(#[from] csv::Error),
+    #[error("cannot be read: {0}")]
+    Csv(String),
     #[error("there is no column {name}; the file has {found}; add a column with the values of {name}")]
     MissingColumn { name: String, found: String },
     #[error("column {name} is there twice; remove one")]
     RepeatedColumn { name: String },
-    #[error("row {row}, column {name}: {found:?} is not a number")]
+    #[error("row {row}, column {name}: {found:?} is not a finite number")]
     NotANumber { row: u64, name: String, found: String },
-    #[error("row {row}: {source}; move the point, or pass --extrapolate to evaluate it all the same")]
-    Outside { row: u64, source: InputError },
+    #[error("row {row}: {cause}; move the point, or pass --extrapolate to evaluate it all the same")]
+    Outside { row: u64, cause: InputError },
     #[error("there are no points below the header")]
     Empty,
-    #[error("{path}: {source}")]
-    InFile { path: String, source: Box<PointsError> },
+    #[error("{path}: {cause}")]
+    InFile { path: String, cause: Box<PointsError> },
+}
+
+impl From<csv::Error> for PointsError {
+    fn from(error: csv::Error) -> Self {
+        Self::Csv(error.to_string())
+    }
 }
 
 /// What points yield.
@@ -52,11 +58,11 @@ impl<'a> PointsFile<'a> {
     pub fn open(path: &Path, inputs: &'a InputSpace, extrapolate: bool) -> Result<Self, PointsError> {
         let path = path.display().to_string();
         Self::find_columns(&path, inputs, extrapolate)
-            .map_err(|source| PointsError::InFile { path, source: Box::new(source) })
+            .map_err(|cause| PointsError::InFile { path, cause: Box::new(cause) })
     }
 
     fn find_columns(path: &str, inputs: &'a InputSpace, extrapolate: bool) -> Result<Self, PointsError> {
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path)?;
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_path(path)?;
         let header = reader.headers()?.clone();
         let mut columns = Vec::new();
         for name in inputs.names() {
@@ -89,7 +95,7 @@ impl<'a> PointsFile<'a> {
                 })?);
             }
             if !self.extrapolate {
-                self.inputs.check(&point).map_err(|source| PointsError::Outside { row, source })?;
+                self.inputs.check(&point).map_err(|cause| PointsError::Outside { row, cause })?;
             }
             points.push(point);
         }
@@ -142,8 +148,7 @@ impl<'a> PointsFile<'a> {
             (true, 0) => Err(PointsError::Empty),
             _ => Ok(points),
         });
-        let points =
-            group.map_err(|source| PointsError::InFile { path: self.path.clone(), source: Box::new(source) })?;
+        let points = group.map_err(|cause| PointsError::InFile { path: self.path.clone(), cause: Box::new(cause) })?;
         if points.is_empty() {
             return Ok(None);
         }

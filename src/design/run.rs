@@ -9,20 +9,20 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum RunError {
     /// The model failed.
-    #[error("the model run at {point} failed: {source}")]
+    #[error("the model run at {point} failed: {cause}")]
     Model {
         /// Where.
         point: String,
         /// Why.
-        source: ModelError,
+        cause: ModelError,
     },
-    /// Its eigenvalues cannot be sorted into modes, or a mode is missing.
-    #[error("the model run at {point} is of no use: {source}")]
+    /// Its eigenvalues cannot be sorted into modes, or a mode of `spectrum.modes` is missing.
+    #[error("spectrum.modes: {cause}; found at {point}")]
     Spectrum {
         /// Where.
         point: String,
         /// Why.
-        source: SpectrumError,
+        cause: SpectrumError,
     },
     /// Two runs found different numbers of oscillating modes, so ranks do not name the same modes.
     #[error(
@@ -48,8 +48,8 @@ pub enum RunError {
 /// [`RunError::Model`] and [`RunError::Spectrum`].
 pub fn direct_computation(model: &dyn Model, inputs: &InputSpace, physical: &[f64]) -> Result<Spectrum, RunError> {
     let eigenvalues =
-        model.eigenvalues(physical).map_err(|source| RunError::Model { point: inputs.describe(physical), source })?;
-    Spectrum::new(&eigenvalues).map_err(|source| RunError::Spectrum { point: inputs.describe(physical), source })
+        model.eigenvalues(physical).map_err(|cause| RunError::Model { point: inputs.describe(physical), cause })?;
+    Spectrum::new(&eigenvalues).map_err(|cause| RunError::Spectrum { point: inputs.describe(physical), cause })
 }
 
 /// The number of oscillating modes at the first point seen, which every other point must share.

@@ -71,6 +71,6 @@ fn run(study: &Study, model: &dyn Model, standardized: Vec<f64>) -> Result<(Vec<
         Ok((modes, components, eigenvalues))
     };
     let (modes, components, eigenvalues) =
-        selected().map_err(|source| RunError::Spectrum { point: study.inputs.describe(&physical), source })?;
+        selected().map_err(|cause| RunError::Spectrum { point: study.inputs.describe(&physical), cause })?;
     Ok((physical, modes, Run { standardized, spectrum, components, eigenvalues }))
 }

@@ -69,12 +69,12 @@ pub enum StudyError {
         place: Place,
     },
     /// A distribution's parameters are unusable.
-    #[error("{place}: {source}")]
+    #[error("{place}: {cause}")]
     Distribution {
         /// Where.
         place: Place,
         /// Why.
-        source: MarginalError,
+        cause: MarginalError,
     },
     /// The distribution is given in neither or both of its two forms.
     #[error("{place}: give either lower and upper, or nominal and spread")]
@@ -83,11 +83,11 @@ pub enum StudyError {
         place: Place,
     },
     /// The inputs do not form a space.
-    #[error("{place}: {source}")]
+    #[error("{place}: {cause}")]
     Inputs {
         /// Where.
         place: Place,
         /// Why.
-        source: InputError,
+        cause: InputError,
     },
 }

@@ -123,7 +123,7 @@ impl Lines<'_> {
             let parameter = self.parameter("inputs", &name, &raw)?;
             inputs.push(Input { marginal: self.marginal(parameter, &raw)?, name });
         }
-        InputSpace::new(inputs).map_err(|source| StudyError::Inputs { place, source })
+        InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
     }
 
     fn marginal(&self, parameter: &Parameter, raw: &Spanned<raw::Input>) -> Result<Marginal, StudyError> {
@@ -137,7 +137,7 @@ impl Lines<'_> {
             _ => return Err(StudyError::DistributionForm { place }),
         };
         let uniform =
-            Uniform::new(lower, upper).map_err(|source| StudyError::Distribution { place: place.clone(), source })?;
+            Uniform::new(lower, upper).map_err(|cause| StudyError::Distribution { place: place.clone(), cause })?;
         if !parameter.range.contains(lower) {
             let expected = format!("{} over the whole interval", parameter.range.describe());
             return Err(StudyError::OutOfRange { place, found: format!("from {lower} to {upper}"), expected });

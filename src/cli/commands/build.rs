@@ -29,22 +29,23 @@ pub(in super::super) fn build(context: &Context, options: &Build) -> anyhow::Res
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.{}", study.name, asked.unwrap_or(Format::Binary).extension())));
     let format = asked.unwrap_or_else(|| Format::of_path(&path));
-    let (_, report) = build_to_file(context, &study, &path, format)?;
+    let (_, report) = build_to_file(context, &study, &options.study.display().to_string(), &path, format)?;
     context.print(&report)?;
     Ok(Ending::Done)
 }
 
-/// Builds the surrogate of `study` and writes it; asks for the place before the first model run.
+/// Builds the surrogate of `study`, read from `source`, and writes it; asks for the place before the first model run.
 pub(super) fn build_to_file(
     context: &Context,
     study: &Study,
+    source: &str,
     path: &Path,
     format: Format,
 ) -> anyhow::Result<(Surrogate, BuildReport)> {
     check_writable(path)?;
     let start = Instant::now();
     let surrogate = crate::build::build(study, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error == BuildError::Interrupted))?;
+        .map_err(|error| interruptible(error.clone(), error == BuildError::Interrupted, source))?;
     let elapsed = start.elapsed().as_secs_f64();
     let bytes = encode(&surrogate, format)?;
     save(path, &bytes)?;

@@ -12,7 +12,8 @@ use std::time::Instant;
 pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow::Result<Ending> {
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let study = read_study(&options.study)?;
-    let report = judge(context, &surrogate, &study, options.samples, options.seed)?;
+    let report =
+        judge(context, &surrogate, &study, &options.study.display().to_string(), options.samples, options.seed)?;
     context.print(&report)?;
     match options.max_error {
         Some(limit) if report.relative_error_percent > limit => {
@@ -30,12 +31,13 @@ pub(super) fn judge(
     context: &Context,
     surrogate: &Surrogate,
     study: &Study,
+    source: &str,
     samples: u64,
     seed: u64,
 ) -> anyhow::Result<CompareReport> {
     let start = Instant::now();
     let comparison = compare_with_model(surrogate, study, samples, seed, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error == ReferenceError::Interrupted))?;
+        .map_err(|error| interruptible(error.clone(), error == ReferenceError::Interrupted, source))?;
     let runs = surrogate.training.counts.direct_computations;
     Ok(CompareReport::new(&study.name, runs, &comparison, seed, start.elapsed().as_secs_f64()))
 }

@@ -24,7 +24,7 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
 pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
     let start = Instant::now();
     let summary = monte_carlo(surrogate, samples, seed, &context.terminal)
-        .map_err(|error| interruptible(error, error == EvalError::Interrupted))?;
+        .map_err(|error| interruptible(error, error == EvalError::Interrupted, &surrogate.provenance.study_name))?;
     Ok(EvalReport::of_surrogate(surrogate, &summary, seed, start.elapsed().as_secs_f64()))
 }
 

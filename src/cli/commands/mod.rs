@@ -56,7 +56,10 @@ impl fmt::Display for PointsReport {
     }
 }
 
-/// Turns an interruption inside the library into the one that decides the exit code.
-fn interruptible<E: std::error::Error + Send + Sync + 'static>(error: E, was_interrupted: bool) -> anyhow::Error {
-    if was_interrupted { Interrupted.into() } else { error.into() }
+/// An error of long work on `what`; an interruption becomes the one that decides the exit code.
+fn interruptible<E>(error: E, was_interrupted: bool, what: &str) -> anyhow::Error
+where
+    E: std::error::Error + Send + Sync + 'static,
+{
+    if was_interrupted { Interrupted.into() } else { anyhow::Error::from(error).context(what.to_owned()) }
 }

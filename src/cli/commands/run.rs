@@ -26,15 +26,16 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
         Some(path) => read_study(path)?,
         None => Study::from_toml(BUILT_IN_STUDY).context("the built-in study")?,
     };
+    let source = options.study.as_ref().map_or("the built-in study".to_owned(), |path| path.display().to_string());
     study.seed = options.seed.unwrap_or(study.seed);
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
     let path = options.output.join(format!("{}.{}", study.name, Format::Binary.extension()));
     std::fs::create_dir_all(&options.output)
         .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
 
-    let (surrogate, build) = build_to_file(context, &study, &path, Format::Binary)?;
+    let (surrogate, build) = build_to_file(context, &study, &source, &path, Format::Binary)?;
     let eval = sample(context, &surrogate, EVAL_SAMPLES, seed)?;
-    let compare = judge(context, &surrogate, &study, COMPARE_SAMPLES, seed)?;
+    let compare = judge(context, &surrogate, &study, &source, COMPARE_SAMPLES, seed)?;
     context.print(&RunReport { build, eval, compare })?;
     Ok(Ending::Done)
 }

@@ -1,0 +1,378 @@
+//! What users type and see: outputs, error messages, exit codes, and that errors leave nothing behind.
+
+mod support;
+
+use assert_cmd::Command;
+use std::fs;
+use std::path::Path;
+use support::{repository, text};
+
+fn pcc(folder: &Path, arguments: &[&str]) -> std::process::Output {
+    Command::cargo_bin("pcc").unwrap().current_dir(folder).args(arguments).output().unwrap()
+}
+
+/// A folder with the r = 2 study, its surrogate and three points.
+fn workplace() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("study.toml"), text("surrogates/clutch-r2-eigenvalues.toml")).unwrap();
+    fs::copy(repository("tests/data/golden.v1.pcc"), folder.path().join("surrogate.pcc")).unwrap();
+    fs::write(folder.path().join("points.csv"), "mu,k_p\n0.25,16e6\n0.0,15.2e6\n0.5,16.8e6\n").unwrap();
+    folder
+}
+
+/// Standard output of a command that must succeed.
+fn output(folder: &Path, arguments: &[&str]) -> String {
+    let output = pcc(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The message of a command that must end with exit code 2, write nothing to standard output and leave no file behind.
+fn refusal(folder: &Path, arguments: &[&str]) -> String {
+    let listing = |folder: &Path| {
+        let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let before = listing(folder);
+    let output = pcc(folder, arguments);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));
+    assert_eq!(listing(folder), before, "{arguments:?} left something behind");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// Snapshots without what changes from run to run: times, rates and digits beyond what is portable.
+macro_rules! assert_output {
+    ($name:literal, $text:expr) => {
+        insta::with_settings!({filters => vec![
+            (r"\d+\.\d+ s", "[time] s"),
+            (r"\d[\d ]* per second", "[rate] per second"),
+            (r#""elapsed_seconds": [\d.e-]+"#, r#""elapsed_seconds": "[time]""#),
+            (r"(\d\.\d{6})\d+", "$1"),
+            (r"self-test      holds: largest difference \S+", "self-test      holds: largest difference [tiny]"),
+        ]}, { insta::assert_snapshot!($name, $text) });
+    };
+}
+
+#[test]
+fn help_of_every_command() {
+    let folder = workplace();
+    let commands = ["run", "build", "eval", "reference", "compare", "inspect", "convert", "completions"];
+    let mut text = output(folder.path(), &["--help"]);
+    for command in commands {
+        text.push_str(&format!("\n=== {command} ===\n{}", output(folder.path(), &["help", command])));
+    }
+    assert_output!("help", text);
+}
+
+#[test]
+fn reports_for_people() {
+    let folder = workplace();
+    let study = ["build", "study.toml", "-o", "built.pcc"];
+    assert_output!("build", output(folder.path(), &study));
+    assert_output!("eval", output(folder.path(), &["eval", "surrogate.pcc", "-n", "1e5"]));
+    assert_output!("reference", output(folder.path(), &["reference", "study.toml", "-n", "2000"]));
+    let compare = ["compare", "surrogate.pcc", "--study", "study.toml", "-n", "2000"];
+    assert_output!("compare", output(folder.path(), &compare));
+    assert_output!("inspect", output(folder.path(), &["inspect", "surrogate.pcc", "--check"]));
+    assert_output!("convert", output(folder.path(), &["convert", "surrogate.pcc", "converted.json"]));
+    let points = ["eval", "surrogate.pcc", "--points", "points.csv", "--out", "out.csv"];
+    assert_output!("points", output(folder.path(), &points));
+    assert_output!("show_study", output(folder.path(), &["build", "study.toml", "--show-study"]));
+}
+
+#[test]
+fn json_is_one_document_with_the_promised_fields() {
+    let folder = workplace();
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&output(folder.path(), &[arguments, &["--json"]].concat())).unwrap()
+    };
+    let has = |value: &serde_json::Value, keys: &[&str]| {
+        for key in keys {
+            assert!(value.pointer(key).is_some_and(|found| !found.is_null()), "{key} is missing");
+        }
+    };
+    const EVAL: [&str; 6] =
+        ["/samples", "/stable_proportion", "/interval/lower", "/interval/upper", "/interval/level", "/elapsed_seconds"];
+    const COMPARE: [&str; 7] = [
+        "/samples",
+        "/proportion_model",
+        "/proportion_surrogate",
+        "/relative_error_percent",
+        "/misclassified_percent",
+        "/components/0/mean_error_percent",
+        "/components/0/variance_error_percent",
+    ];
+    has(&json(&["eval", "surrogate.pcc", "-n", "1000"]), &EVAL);
+    has(&json(&["reference", "study.toml", "-n", "100"]), &EVAL);
+    has(&json(&["build", "study.toml"]), &["/direct_computations", "/components/0/s2", "/file"]);
+    has(&json(&["inspect", "surrogate.pcc"]), &["/direct_computations", "/problem_hash", "/content_id"]);
+    has(&json(&["compare", "surrogate.pcc", "--study", "study.toml", "-n", "100"]), &COMPARE);
+    has(&json(&["convert", "surrogate.pcc", "out.json"]), &["/file"]);
+    let run = json(&["run", "study.toml", "-o", "results"]);
+    for (part, keys) in [("eval", &EVAL[..]), ("compare", &COMPARE[..]), ("build", &["/direct_computations"])] {
+        has(&run[part], keys);
+    }
+    assert_eq!(run["eval"]["samples"], 1_000_000);
+    assert_eq!(run["compare"]["samples"], 10_000);
+    assert!(folder.path().join("results/clutch-r2-eigenvalues.pcc").exists());
+}
+
+#[test]
+fn eval_and_reference_write_the_promised_columns() {
+    let folder = workplace();
+    for (source, name) in [("eval", "surrogate.pcc"), ("reference", "study.toml")] {
+        output(folder.path(), &[source, name, "--points", "points.csv", "--out", "out.csv"]);
+        let out = fs::read_to_string(folder.path().join("out.csv")).unwrap();
+        let mut lines = out.lines();
+        assert_eq!(lines.next(), Some("mu,k_p,re_3,im_3,re_4,im_4,max_re,stable"));
+        let rows: Vec<Vec<f64>> =
+            lines.map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+        assert_eq!(rows.len(), 3);
+        assert_eq!(rows.iter().map(|row| row[7]).collect::<Vec<_>>(), [0.0, 1.0, 0.0], "stable at μ = 0 only");
+        assert!(rows.iter().all(|row| (row[7] == 1.0) == (row[6] < 0.0)));
+    }
+}
+
+#[test]
+fn eval_and_reference_take_the_same_points() {
+    let folder = workplace();
+    let compared: serde_json::Value = serde_json::from_str(&output(
+        folder.path(),
+        &["compare", "surrogate.pcc", "--study", "study.toml", "-n", "3000", "--seed", "5", "--json"],
+    ))
+    .unwrap();
+    for (command, key) in [("eval surrogate.pcc", "proportion_surrogate"), ("reference study.toml", "proportion_model")]
+    {
+        let mut arguments: Vec<&str> = command.split(' ').collect();
+        arguments.extend(["-n", "3000", "--seed", "5", "--json"]);
+        let alone: serde_json::Value = serde_json::from_str(&output(folder.path(), &arguments)).unwrap();
+        assert_eq!(alone["stable_proportion"], compared[key]);
+    }
+}
+
+#[test]
+fn shown_study_builds_the_same_surrogate() {
+    let folder = workplace();
+    let shown = output(folder.path(), &["build", "study.toml", "--show-study"]);
+    fs::write(folder.path().join("shown.toml"), shown).unwrap();
+    output(folder.path(), &["build", "study.toml", "-o", "a.pcc"]);
+    output(folder.path(), &["build", "shown.toml", "-o", "b.pcc"]);
+    let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("a.pcc"), bytes("b.pcc"));
+}
+
+#[test]
+fn conversion_there_and_back_gives_identical_bytes() {
+    let folder = workplace();
+    output(folder.path(), &["convert", "surrogate.pcc", "there.json"]);
+    output(folder.path(), &["convert", "there.json", "back.pcc"]);
+    let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("back.pcc"), bytes("surrogate.pcc"));
+}
+
+#[test]
+fn requested_checks_decide_the_exit_code() {
+    let folder = workplace();
+    let compare = ["compare", "surrogate.pcc", "--study", "study.toml", "-n", "2000", "--max-error"];
+    assert_eq!(pcc(folder.path(), &[&compare[..], &["50"]].concat()).status.code(), Some(0));
+    assert_eq!(pcc(folder.path(), &[&compare[..], &["0"]].concat()).status.code(), Some(1));
+    assert_eq!(pcc(folder.path(), &["inspect", "surrogate.pcc", "--check"]).status.code(), Some(0));
+}
+
+#[test]
+fn bad_studies_are_refused_with_place_and_remedy() {
+    let folder = workplace();
+    let good = text("surrogates/clutch-r2-eigenvalues.toml");
+    let mu = "{ distribution = \"uniform\", lower = 0.0, upper = 0.5 }";
+    let cases = [
+        ("unknown key", good.replace("[model]", "[model]\ncolour = \"red\"")),
+        ("unknown table", format!("{good}\n[extras]\n")),
+        ("missing key", good.replace("name = ", "# name = ")),
+        ("no inputs table", good.split("[inputs]").next().unwrap().to_owned()),
+        ("zero inputs", format!("{}[inputs]\n", good.split("[inputs]").next().unwrap())),
+        ("inverted interval", good.replace("lower = 0.0", "lower = 0.7")),
+        ("NaN", good.replace("lower = 0.0", "lower = nan")),
+        ("infinite", good.replace("upper = 0.5", "upper = inf")),
+        ("both forms", good.replace("upper = 0.5", "upper = 0.5, spread = 0.1")),
+        ("half a form", good.replace(", upper = 0.5", "")),
+        ("negative friction", good.replace("lower = 0.0", "lower = -0.1")),
+        ("unknown distribution", good.replace(mu, "{ distribution = \"cauchy\", lower = 0.0, upper = 0.5 }")),
+        ("unknown input", good.replace("mu ", "nu ")),
+        (
+            "input given twice",
+            good.replace("[spectrum]", "mu = { distribution = \"uniform\", lower = 0.0, upper = 1.0 }\n[spectrum]"),
+        ),
+        ("unknown model", good.replace("\"clutch\"", "\"brake\"")),
+        ("constant and input", good.replace("[inputs]", "[model.constants]\nmu = 0.3\n[inputs]")),
+        ("constant out of range", good.replace("[inputs]", "[model.constants]\nplate_mass = 0.0\n[inputs]")),
+        ("unknown constant", good.replace("[inputs]", "[model.constants]\nplate_colour = 1.0\n[inputs]")),
+        ("mode that does not exist", good.replace("[3, 4]", "[3, 9]")),
+        ("mode zero", good.replace("[3, 4]", "[0, 4]")),
+        ("mode twice", good.replace("[3, 4]", "[3, 3]")),
+        ("no modes", good.replace("[3, 4]", "[]")),
+        ("modes of another type", good.replace("[3, 4]", "3.5")),
+        ("unknown target", good.replace("\"eigenvalues\"", "\"eigenvectors\"")),
+        ("q_norm zero", format!("{good}\n[fit]\nq_norm = 0.0\n")),
+        ("q_norm above one", format!("{good}\n[fit]\nq_norm = 1.5\n")),
+        ("max_degree zero", format!("{good}\n[fit]\nmax_degree = 0\n")),
+        ("too many candidates", format!("{good}\n[fit]\nq_norm = 1.0\nmax_degree = 1000\n[design]\nmaximum = 1\n")),
+        ("epsilon out of range", format!("{good}\n[fit]\nepsilon_forward = -1.0\n")),
+        ("unknown method", format!("{good}\n[fit]\nmethod = \"magic\"\n")),
+        ("maximum below initial", format!("{good}\n[design]\ninitial = 100\nmaximum = 50\n")),
+        ("one point", format!("{good}\n[design]\ninitial = 1\n")),
+        ("name with a path", good.replace("name = \"clutch-r2-eigenvalues\"", "name = \"../../etc/passwd\"")),
+        ("newer format", good.replace("format = 1", "format = 2")),
+        ("not TOML", "this is not a study".to_owned()),
+    ];
+    let mut messages = String::new();
+    for (case, study) in cases {
+        assert_ne!(study, good, "{case} changes nothing");
+        fs::write(folder.path().join("study.toml"), study).unwrap();
+        messages.push_str(&format!("── {case}\n{}", refusal(folder.path(), &["build", "study.toml"])));
+    }
+    assert_output!("bad_studies", messages);
+}
+
+#[test]
+fn bad_files_are_refused_with_place_and_remedy() {
+    let folder = workplace();
+    let bytes = fs::read(folder.path().join("surrogate.pcc")).unwrap();
+    let changed = |position: usize| {
+        let mut changed = bytes.clone();
+        changed[position] ^= 0x40;
+        changed
+    };
+    let cases: [(&str, Vec<u8>); 6] = [
+        ("truncated", bytes[..bytes.len() / 2].to_vec()),
+        ("flipped byte", changed(bytes.len() / 2)),
+        ("future version", changed(8)),
+        ("empty", Vec::new()),
+        ("not a surrogate", b"mu,k_p\n0.25,16e6\n".to_vec()),
+        ("JSON of something else", b"{\"hello\": 1}".to_vec()),
+    ];
+    let mut messages = String::new();
+    for (case, content) in cases {
+        fs::write(folder.path().join("bad.pcc"), content).unwrap();
+        for arguments in
+            [&["inspect", "bad.pcc"][..], &["eval", "bad.pcc", "-n", "10"], &["convert", "bad.pcc", "x.json"]]
+        {
+            let message = refusal(folder.path(), arguments);
+            if arguments[0] == "inspect" {
+                messages.push_str(&format!("── {case}\n{message}"));
+            }
+        }
+    }
+    messages.push_str(&format!("── missing\n{}", refusal(folder.path(), &["eval", "none.pcc", "-n", "10"])));
+    assert_output!("bad_files", messages);
+}
+
+#[test]
+fn bad_points_are_refused_with_row_and_remedy() {
+    let folder = workplace();
+    let cases = [
+        ("missing column", "mu,k_f\n0.25,7e6\n"),
+        ("repeated column", "mu,k_p,mu\n0.25,16e6,0.25\n"),
+        ("text cell", "mu,k_p\n0.25,16e6\nlow,16e6\n"),
+        ("empty cell", "mu,k_p\n0.25,\n"),
+        ("NaN cell", "mu,k_p\nNaN,16e6\n"),
+        ("short row", "mu,k_p\n0.25,16e6\n0.25\n"),
+        ("outside the domain", "mu,k_p\n0.25,16e6\n0.25,16e6\n0.6,16e6\n"),
+        ("no points", "mu,k_p\n"),
+        ("empty file", ""),
+    ];
+    let mut messages = String::new();
+    for (case, points) in cases {
+        fs::write(folder.path().join("points.csv"), points).unwrap();
+        for (command, file) in [("eval", "surrogate.pcc"), ("reference", "study.toml")] {
+            let message = refusal(folder.path(), &[command, file, "--points", "points.csv", "--out", "out.csv"]);
+            if command == "eval" {
+                messages.push_str(&format!("── {case}\n{message}"));
+            }
+        }
+    }
+    assert_output!("bad_points", messages);
+    fs::write(folder.path().join("points.csv"), "mu,k_p\n0.6,16e6\n").unwrap();
+    for (command, file) in [("eval", "surrogate.pcc"), ("reference", "study.toml")] {
+        output(folder.path(), &[command, file, "--points", "points.csv", "--out", "out.csv", "--extrapolate"]);
+    }
+}
+
+#[test]
+fn bad_usage_is_refused() {
+    let folder = workplace();
+    let mut messages = String::new();
+    let cases: [&[&str]; 12] = [
+        &["eval", "surrogate.pcc"],
+        &["eval", "surrogate.pcc", "-n", "0"],
+        &["eval", "surrogate.pcc", "-n", "1.5"],
+        &["eval", "surrogate.pcc", "-n", "10", "--points", "points.csv", "--out", "x.csv"],
+        &["eval", "surrogate.pcc", "--points", "points.csv"],
+        &["eval", "surrogate.pcc", "-n", "10", "--threads", "0"],
+        &["reference", "study.toml", "-n", "0"],
+        &["compare", "surrogate.pcc", "--study", "study.toml", "-n", "0"],
+        &["compare", "surrogate.pcc", "--study", "study.toml", "-n", "10", "--max-error", "nan"],
+        &["build", "study.toml", "-o", "no/such/folder/x.pcc"],
+        &["build", "study.toml", "-o", "."],
+        &["build", "none.toml"],
+    ];
+    for arguments in cases {
+        messages.push_str(&format!("── pcc {}\n{}", arguments.join(" "), refusal(folder.path(), arguments)));
+    }
+    assert_output!("bad_usage", messages);
+}
+
+#[test]
+fn a_study_of_another_problem_is_not_compared() {
+    let folder = workplace();
+    let other = text("surrogates/clutch-r2-eigenvalues.toml").replace("upper = 0.5", "upper = 0.4");
+    fs::write(folder.path().join("other.toml"), other).unwrap();
+    let message = refusal(folder.path(), &["compare", "surrogate.pcc", "--study", "other.toml", "-n", "10"]);
+    assert!(message.contains("built for another problem"), "{message}");
+}
+
+/// Friction that turns two oscillating modes into real eigenvalues part of the way: ranks do not name the same modes.
+#[test]
+fn a_changing_number_of_oscillating_modes_shows_two_points() {
+    let folder = workplace();
+    let study = text("surrogates/clutch-r1-eigenvalues.toml")
+        .replace("[inputs]", "[model.constants]\nk_f = 0.0\n[inputs]")
+        .replace(
+            "mu      = { distribution = \"uniform\", lower = 0.0, upper = 0.5 }",
+            "c_f = { distribution = \"uniform\", lower = 0.0, upper = 1e6 }",
+        )
+        .replace("[3, 4]", "\"all\"");
+    fs::write(folder.path().join("damped.toml"), study).unwrap();
+    for arguments in [&["build", "damped.toml"][..], &["reference", "damped.toml", "-n", "1000"]] {
+        let message = refusal(folder.path(), arguments);
+        assert!(message.contains("modes oscillate at c_f = ") && message.contains(" but "), "{message}");
+    }
+}
+
+#[test]
+fn completions_for_every_shell() {
+    let folder = workplace();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(output(folder.path(), &["completions", shell]).contains("reference"), "{shell}");
+    }
+}
+
+/// Ctrl-C stops long work with exit code 130 and leaves nothing half-written.
+#[cfg(unix)]
+#[test]
+fn interruption_ends_with_130_and_no_file() {
+    let folder = workplace();
+    let program = assert_cmd::cargo::cargo_bin("pcc");
+    let mut child = std::process::Command::new(program)
+        .current_dir(folder.path())
+        .args(["eval", "surrogate.pcc", "-n", "1e13", "--quiet"])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(interrupted.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+}
