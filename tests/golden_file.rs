@@ -49,20 +49,23 @@ impl Bytes {
     fn kind(&mut self, names: &[&str]) -> Value {
         json!(names[self.u32() as usize])
     }
-    fn fields(&mut self, fields: &[(&str, &dyn Fn(&mut Self) -> Value)]) -> Value {
+    fn fields(&mut self, fields: &[Field]) -> Value {
         let entries: Map<String, Value> = fields.iter().map(|(name, read)| ((*name).to_owned(), read(self))).collect();
         Value::Object(entries)
     }
     fn bounds(&mut self) -> Value {
         self.fields(&[("lower", &Self::float), ("upper", &Self::float)])
     }
-    fn tagged(&mut self, name: &str, fields: &[(&str, &dyn Fn(&mut Self) -> Value)]) -> Value {
+    fn tagged(&mut self, name: &str, fields: &[Field]) -> Value {
         assert_eq!(self.u32(), 0, "only the first kind of {name} is in this file");
         json!({ name: self.fields(fields) })
     }
 }
 
 type B = Bytes;
+
+/// A field: its name and how to read it.
+type Field<'a> = (&'a str, &'a dyn Fn(&mut B) -> Value);
 
 fn u16_number(b: &mut B) -> Value {
     json!(b.u16())
@@ -80,8 +83,8 @@ fn meta(b: &mut B) -> Value {
 }
 
 fn inputs(b: &mut B) -> Value {
-    let interval: [(&str, &dyn Fn(&mut B) -> Value); 2] = [("lower", &B::float), ("upper", &B::float)];
-    let affine: [(&str, &dyn Fn(&mut B) -> Value); 2] = [("center", &B::float), ("half_width", &B::float)];
+    let interval: [Field; 2] = [("lower", &B::float), ("upper", &B::float)];
+    let affine: [Field; 2] = [("center", &B::float), ("half_width", &B::float)];
     let input = |b: &mut B| {
         b.fields(&[
             ("name", &B::text),
@@ -186,15 +189,15 @@ fn a_reader_written_from_the_layout_alone_finds_what_json_says() {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [(&str, fn(&mut B) -> Value); 8] = [
-        ("meta", meta),
-        ("inputs", inputs),
-        ("outputs", outputs),
-        ("elements", elements),
-        ("expansions", expansions),
-        ("training", training),
-        ("decision", decision),
-        ("self_test", self_test),
+    let sections: [Field; 8] = [
+        ("meta", &meta),
+        ("inputs", &inputs),
+        ("outputs", &outputs),
+        ("elements", &elements),
+        ("expansions", &expansions),
+        ("training", &training),
+        ("decision", &decision),
+        ("self_test", &self_test),
     ];
     for (position, (name, read)) in sections.into_iter().enumerate() {
         assert_eq!([b.u16(), b.u16(), b.u16(), b.u16()], [position as u16 + 1, 1, 1, 0], "header of {name}");

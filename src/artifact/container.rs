@@ -69,8 +69,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Decoded, ReadError> {
 }
 
 fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
-    let (known, unknown_sections) = section_table(bytes, version)?;
-    let sections = Bodies { known, minor: version.1 };
+    let sections = Sections::new(bytes, version)?;
     let document = Document {
         format: FormatVersion { major: version.0, minor: version.1 },
         meta: sections.required(1)?,
@@ -83,46 +82,51 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         self_test: sections.required(8)?,
         certificates: sections.optional(CERTIFICATES)?,
     };
-    Ok(Decoded { document, version, unknown_sections })
+    Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }
 
-/// Splits the content into the sections this code knows and the kinds of those it may skip.
-fn section_table(bytes: &[u8], (major, minor): (u16, u16)) -> Result<(Vec<(u16, &[u8])>, Vec<u16>), ReadError> {
-    let mut reader = Reader { bytes };
-    let (mut known, mut skipped, mut before) = (Vec::new(), Vec::new(), 0);
-    while !reader.bytes.is_empty() {
-        let damaged = |what: &str| ReadError::SectionTable(format!("{what} after section {before}"));
-        let header = [reader.u16(), reader.u16(), reader.u16(), reader.u16()];
-        let ([Some(kind), Some(version), Some(flags), Some(reserved)], Some(length)) = (header, reader.u64()) else {
-            return Err(damaged("a section header is cut off"));
-        };
-        if kind <= before {
-            return Err(damaged(&format!("section {kind} is out of order")));
-        }
-        if reserved != 0 || flags > 1 {
-            return Err(damaged(&format!("section {kind} has unknown flags")));
-        }
-        let body = usize::try_from(length).ok().and_then(|length| reader.take(length));
-        let body = body.ok_or_else(|| damaged(&format!("section {kind} is cut off")))?;
-        let is_known = usize::from(kind) <= SECTION_NAMES.len() && version == 1;
-        if is_known {
-            known.push((kind, body));
-        } else if flags & 1 == 1 {
-            return Err(ReadError::UnknownSection { kind, version, major, minor });
-        } else {
-            skipped.push(kind);
-        }
-        before = kind;
-    }
-    Ok((known, skipped))
-}
-
-struct Bodies<'a> {
+/// The sections of a file by kind.
+struct Sections<'a> {
+    /// Bodies of those this code knows.
     known: Vec<(u16, &'a [u8])>,
+    /// Kinds of those it may skip.
+    skipped: Vec<u16>,
+    /// Minor version of the file.
     minor: u16,
 }
 
-impl Bodies<'_> {
+impl<'a> Sections<'a> {
+    fn new(bytes: &'a [u8], (major, minor): (u16, u16)) -> Result<Self, ReadError> {
+        let mut reader = Reader { bytes };
+        let (mut known, mut skipped, mut before) = (Vec::new(), Vec::new(), 0);
+        while !reader.bytes.is_empty() {
+            let damaged = |what: &str| ReadError::SectionTable(format!("{what} after section {before}"));
+            let header = [reader.u16(), reader.u16(), reader.u16(), reader.u16()];
+            let ([Some(kind), Some(version), Some(flags), Some(reserved)], Some(length)) = (header, reader.u64())
+            else {
+                return Err(damaged("a section header is cut off"));
+            };
+            if kind <= before {
+                return Err(damaged(&format!("section {kind} is out of order")));
+            }
+            if reserved != 0 || flags > 1 {
+                return Err(damaged(&format!("section {kind} has unknown flags")));
+            }
+            let body = usize::try_from(length).ok().and_then(|length| reader.take(length));
+            let body = body.ok_or_else(|| damaged(&format!("section {kind} is cut off")))?;
+            let is_known = usize::from(kind) <= SECTION_NAMES.len() && version == 1;
+            if is_known {
+                known.push((kind, body));
+            } else if flags & 1 == 1 {
+                return Err(ReadError::UnknownSection { kind, version, major, minor });
+            } else {
+                skipped.push(kind);
+            }
+            before = kind;
+        }
+        Ok(Self { known, skipped, minor })
+    }
+
     fn optional<T: DeserializeOwned>(&self, kind: u16) -> Result<Option<T>, ReadError> {
         let found = self.known.iter().find(|(known, _)| *known == kind);
         found.map(|(_, body)| decode_body(kind, body, self.minor)).transpose()

@@ -1,5 +1,7 @@
 //! Versions of the surrogate file and what this code can do with them.
 
+use std::cmp::Ordering;
+
 /// Major version written and read. It changes when older readers could misunderstand a file.
 pub const MAJOR: u16 = 1;
 
@@ -30,9 +32,9 @@ pub enum Compatibility {
 /// assert_eq!(compatibility(MAJOR + 1, 0), Compatibility::OtherMajor);
 /// ```
 pub fn compatibility(major: u16, minor: u16) -> Compatibility {
-    match (major == MAJOR, minor <= MINOR) {
+    match (major == MAJOR, minor.cmp(&MINOR)) {
         (false, _) => Compatibility::OtherMajor,
-        (true, true) => Compatibility::Known,
-        (true, false) => Compatibility::NewerMinor,
+        (true, Ordering::Less | Ordering::Equal) => Compatibility::Known,
+        (true, Ordering::Greater) => Compatibility::NewerMinor,
     }
 }

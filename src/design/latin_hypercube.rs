@@ -101,7 +101,7 @@ impl NestedLatinHypercube {
 
 /// The stratum ⌊u n⌋ of the midpoint u = (2 cell + 1)/2⁵³, in exact integer arithmetic.
 fn stratum(cell: u64, strata: u64) -> u64 {
-    ((2 * u128::from(cell) + 1) * u128::from(strata) >> (UNIT_BITS + 1)) as u64
+    (((2 * u128::from(cell) + 1) * u128::from(strata)) >> (UNIT_BITS + 1)) as u64
 }
 
 /// The first cell whose midpoint lies in `stratum` or beyond.
@@ -115,7 +115,7 @@ fn first_cell(stratum: u64, strata: u64) -> u64 {
 fn cell_in_stratum(stratum: u64, strata: u64, stream: &mut Stream) -> u64 {
     let first = first_cell(stratum, strata);
     let width = first_cell(stratum + 1, strata) - first;
-    first + (u128::from(stream.next_cell()) * u128::from(width) >> UNIT_BITS) as u64
+    first + ((u128::from(stream.next_cell()) * u128::from(width)) >> UNIT_BITS) as u64
 }
 
 #[cfg(test)]
