@@ -42,6 +42,7 @@ pub mod index_set;
 pub mod input;
 pub mod model;
 pub mod numerics;
+pub mod parallel;
 pub mod polynomial;
 pub mod progress;
 pub mod random;

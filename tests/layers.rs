@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Modules by layer, from those that know no domain to those that face users.
 const LAYERS: [&[&str]; 8] = [
-    &["numerics", "random", "statistics", "digest", "progress"],
+    &["numerics", "random", "statistics", "digest", "parallel", "progress"],
     &["polynomial", "index_set", "input"],
     &["model", "spectrum", "study"],
     &["design"],

@@ -3,10 +3,10 @@
 use super::BuildError;
 use crate::design::{ModeCount, NestedLatinHypercube, RunError, Samples, direct_computation};
 use crate::model::Model;
+use crate::parallel::try_map;
 use crate::progress::Observer;
 use crate::spectrum::{Output, Spectrum};
 use crate::study::Study;
-use rayon::prelude::*;
 
 /// A growing design with one spectrum per point. No point is run twice.
 pub(super) struct Evaluations<'a> {
@@ -42,17 +42,14 @@ impl<'a> Evaluations<'a> {
         self.design.grow_to(size);
         let samples = self.samples();
         observer.begin("model runs", (size - old) as u64);
-        let runs: Result<Vec<Run>, BuildError> = (old..size)
-            .into_par_iter()
-            .map(|i| {
-                if observer.interrupted() {
-                    return Err(BuildError::Interrupted);
-                }
-                let run = self.run(model, inputs.physical(samples.point(i)))?;
-                observer.advance(1);
-                Ok(run)
-            })
-            .collect();
+        let runs = try_map(size - old, |new| {
+            if observer.interrupted() {
+                return Err(BuildError::Interrupted);
+            }
+            let run = self.run(model, inputs.physical(samples.point(old + new)))?;
+            observer.advance(1);
+            Ok(run)
+        });
         observer.finish();
         for Run { physical, spectrum, modes } in runs? {
             self.mode_count.check(inputs, &physical, &spectrum)?;

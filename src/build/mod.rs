@@ -11,11 +11,11 @@ use crate::fit::Fitted;
 use crate::fit::stepwise::{self, Outcome};
 use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
 use crate::model::ModelError;
+use crate::parallel::try_map;
 use crate::progress::Observer;
 use crate::regression::BasisTables;
 use crate::study::Study;
 use crate::surrogate::Surrogate;
-use rayon::prelude::*;
 use thiserror::Error;
 
 /// Why a build gave no surrogate.
@@ -92,17 +92,14 @@ fn fit_components(
         .collect();
     let tables = BasisTables::new(&evaluations.samples(), &recurrences, usize::from(study.fit.max_degree));
     observer.begin("fitting components", components.len() as u64);
-    let outcomes = components
-        .par_iter()
-        .map(|values| {
-            if observer.interrupted() {
-                return Err(BuildError::Interrupted);
-            }
-            let outcome = stepwise::fit(&tables, values, shells, &study.fit);
-            observer.advance(1);
-            Ok(outcome)
-        })
-        .collect();
+    let outcomes = try_map(components.len(), |id| {
+        if observer.interrupted() {
+            return Err(BuildError::Interrupted);
+        }
+        let outcome = stepwise::fit(&tables, &components[id], shells, &study.fit);
+        observer.advance(1);
+        Ok(outcome)
+    });
     observer.finish();
     outcomes
 }

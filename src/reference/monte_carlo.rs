@@ -61,7 +61,7 @@ pub(super) fn for_each_chunk(
             random_point(&study.inputs, seed, Purpose::Evaluation, index, &mut point);
             point
         });
-        let runs = runner.run(points.collect())?;
+        let runs = runner.run(&points.collect::<Vec<_>>())?;
         consume(&runner, &runs);
         observer.advance(runs.len() as u64);
         if observer.interrupted() {

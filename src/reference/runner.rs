@@ -2,10 +2,10 @@
 
 use crate::design::{ModeCount, RunError, direct_computation};
 use crate::model::{Model, ModelError};
+use crate::parallel::try_map;
 use crate::spectrum::{Spectrum, SpectrumError};
 use crate::study::Study;
 use nalgebra::Complex;
-use rayon::prelude::*;
 
 /// One direct computation.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,11 +48,11 @@ impl<'a> Runner<'a> {
     /// # Errors
     ///
     /// [`RunError`] names the first point that failed.
-    pub fn run(&mut self, points: Vec<Vec<f64>>) -> Result<Vec<Run>, RunError> {
+    pub fn run(&mut self, points: &[Vec<f64>]) -> Result<Vec<Run>, RunError> {
         let (study, model) = (self.study, self.model.as_ref());
-        let runs: Result<Vec<_>, RunError> = points.into_par_iter().map(|point| run(study, model, point)).collect();
+        let runs = try_map(points.len(), |i| run(study, model, points[i].clone()))?;
         let mut checked = Vec::new();
-        for (physical, modes, run) in runs? {
+        for (physical, modes, run) in runs {
             self.mode_count.check(&study.inputs, &physical, &run.spectrum)?;
             self.modes = modes;
             checked.push(run);

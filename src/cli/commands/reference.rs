@@ -38,9 +38,8 @@ fn at_points(
     let mut runner = Runner::new(study)?;
     let file = PointsFile::open(points, &study.inputs, extrapolate)?;
     let (count, stable) = file.evaluate(out, |group| {
-        let runs = runner
-            .run(group.iter().map(|point| study.inputs.standardized(point)).collect())
-            .with_context(|| source.clone())?;
+        let standardized: Vec<Vec<f64>> = group.iter().map(|point| study.inputs.standardized(point)).collect();
+        let runs = runner.run(&standardized).with_context(|| source.clone())?;
         let results = runs.into_iter().map(|run| (run.eigenvalues, run.spectrum.max_re())).collect();
         Ok(Evaluated { modes: runner.modes().to_vec(), results })
     })?;
