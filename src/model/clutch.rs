@@ -196,6 +196,15 @@ mod tests {
         assert!((largest(&scaled) * scale.sqrt() - largest(&plain)).abs() < 1e-9);
     }
 
+    /// Points at which the iteration circles around the fourfold zero in the given basis.
+    #[test]
+    fn stalled_iterations_converge_in_another_basis() {
+        let friction = Clutch::new(&[], &MU_ONLY).unwrap();
+        assert_eq!(friction.eigenvalues(&[0.395_519_087_835_095_54]).unwrap().len(), 12);
+        let two = Clutch::new(&[], &["mu", "k_p"]).unwrap();
+        assert_eq!(two.eigenvalues(&[0.458_215_768_123_292_4, 16_065_468.631_272_795]).unwrap().len(), 12);
+    }
+
     #[test]
     fn unknown_parameters_are_named() {
         let error = Clutch::new(&[("k_q", 1.0)], &[]).unwrap_err();
