@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let seconds = start.elapsed().as_secs_f64();
             let comparison = compare(&surrogate, &study, points, seed, &Silent)?;
             let runs = surrogate.training.counts.direct_computations;
-            let error = comparison.relative_error_percent();
+            let error = comparison.relative_error_percent().ok_or("the model is never stable")?;
             let holds = runs <= paper_runs && error <= paper_error;
             kept &= holds;
             let degree = surrogate.expansions.iter().map(|expansion| expansion.degree).max().unwrap_or(0);

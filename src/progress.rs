@@ -1,5 +1,12 @@
 //! How long work tells what it does and learns that it should stop.
 
+use thiserror::Error;
+
+/// The user asked long work to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("interrupted")]
+pub struct Interrupted;
+
 /// Watches long work. Calls come from several threads.
 pub trait Observer: Sync {
     /// A stage of `total` steps begins: "model runs", "samples" and so on.
@@ -11,8 +18,17 @@ pub trait Observer: Sync {
     /// The stage ended.
     fn finish(&self);
 
-    /// Whether the user asked to stop. Work that sees this returns an error soon and leaves nothing behind.
+    /// Whether the user asked to stop.
     fn interrupted(&self) -> bool;
+
+    /// Asked again and again by long work, so that it ends soon after the user asked to stop.
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`] if the user asked to stop.
+    fn check(&self) -> Result<(), Interrupted> {
+        if self.interrupted() { Err(Interrupted) } else { Ok(()) }
+    }
 }
 
 /// Neither shows nor stops anything.

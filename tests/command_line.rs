@@ -221,9 +221,14 @@ fn bad_studies_are_refused_with_place_and_remedy() {
         ("epsilon out of range", format!("{good}\n[fit]\nepsilon_forward = -1.0\n")),
         ("unknown method", format!("{good}\n[fit]\nmethod = \"magic\"\n")),
         ("maximum below initial", format!("{good}\n[design]\ninitial = 100\nmaximum = 50\n")),
+        (
+            "too much memory",
+            format!("{good}\n[fit]\nmax_degree = 100\n[design]\nmaximum = 1000000\nstep = 1000000\n")
+                .replace("[inputs]", "[inputs]\nl = { distribution = \"uniform\", nominal = 0.0125, spread = 0.05 }"),
+        ),
         ("one point", format!("{good}\n[design]\ninitial = 1\n")),
         ("name with a path", good.replace("name = \"clutch-r2-eigenvalues\"", "name = \"../../etc/passwd\"")),
-        ("newer format", good.replace("format = 1", "format = 2")),
+        ("newer format", good.replace("format = 1", "format = 2\nsurprise = true")),
         ("not TOML", "this is not a study".to_owned()),
     ];
     let mut messages = String::new();
@@ -274,6 +279,7 @@ fn bad_points_are_refused_with_row_and_remedy() {
     let cases = [
         ("missing column", "mu,k_f\n0.25,7e6\n"),
         ("repeated column", "mu,k_p,mu\n0.25,16e6,0.25\n"),
+        ("decimal commas", "mu,k_p\n0,25,16e6\n"),
         ("text cell", "mu,k_p\n0.25,16e6\nlow,16e6\n"),
         ("empty cell", "mu,k_p\n0.25,\n"),
         ("NaN cell", "mu,k_p\nNaN,16e6\n"),
@@ -343,11 +349,65 @@ fn a_changing_number_of_oscillating_modes_shows_two_points() {
             "c_f = { distribution = \"uniform\", lower = 0.0, upper = 1e6 }",
         )
         .replace("[3, 4]", "\"all\"");
-    fs::write(folder.path().join("damped.toml"), study).unwrap();
-    for arguments in [&["build", "damped.toml"][..], &["reference", "damped.toml", "-n", "1000"]] {
-        let message = refusal(folder.path(), arguments);
-        assert!(message.contains("modes oscillate at c_f = ") && message.contains(" but "), "{message}");
+    for modes in ["\"all\"", "[1, 2]", "[3, 4]"] {
+        fs::write(folder.path().join("damped.toml"), study.replace("\"all\"", modes)).unwrap();
+        for arguments in [&["build", "damped.toml"][..], &["reference", "damped.toml", "-n", "1000"]] {
+            let message = refusal(folder.path(), arguments);
+            assert!(message.contains("modes oscillate at c_f = ") && message.contains(" but "), "{message}");
+        }
     }
+}
+
+/// Values beyond double precision are errors, never a stable machine.
+#[test]
+fn values_that_are_not_finite_are_refused() {
+    let folder = workplace();
+    fs::write(folder.path().join("points.csv"), "mu,k_p\n0.25,16e6\n1e30,16e6\n").unwrap();
+    let arguments = ["eval", "surrogate.pcc", "--points", "points.csv", "--out", "out.csv", "--extrapolate"];
+    let message = refusal(folder.path(), &arguments);
+    assert!(message.contains("points.csv: row 2: the surrogate has no finite value there"), "{message}");
+    fs::write(folder.path().join("points.csv"), "mu,k_p\n-1.0,16e6\n").unwrap();
+    let arguments = ["reference", "study.toml", "--points", "points.csv", "--out", "out.csv", "--extrapolate"];
+    let message = refusal(folder.path(), &arguments);
+    assert!(message.contains("mu = -1, but mu must be zero or greater"), "{message}");
+}
+
+/// The hash alone does not decide: a file whose inputs differ from the study's is not compared either.
+#[test]
+fn a_forged_problem_hash_is_noticed() {
+    let folder = workplace();
+    let hash = |name: &str| {
+        let json: serde_json::Value = serde_json::from_str(&text(name)).unwrap();
+        json["meta"]["problem_hash"].as_str().unwrap().to_owned()
+    };
+    let own = hash("surrogates/clutch-r2-eigenvalues.json");
+    let forged =
+        text("surrogates/clutch-r2-eigenvalues.json").replace(&own, &hash("surrogates/clutch-r8-eigenvalues.json"));
+    fs::write(folder.path().join("forged.json"), forged).unwrap();
+    fs::write(folder.path().join("other.toml"), text("surrogates/clutch-r8-eigenvalues.toml")).unwrap();
+    let message = refusal(folder.path(), &["compare", "forged.json", "--study", "other.toml", "-n", "10"]);
+    assert!(message.contains("built for another problem"), "{message}");
+}
+
+/// Without damping all real parts are zero: rounding is not fitted, and errors of nothing are zero.
+#[test]
+fn components_that_do_not_vary_are_constant() {
+    let folder = workplace();
+    let undamped = text("surrogates/clutch-r2-eigenvalues.toml")
+        .replace("mu      = { distribution = \"uniform\", lower = 0.0, upper = 0.5 }", "")
+        .replace(
+            "[inputs]",
+            "[model.constants]\nmu = 0.0\nc_A = 0.0\nc_B = 0.0\nc_C = 0.0\nc_D = 0.0\nc_f = 0.0\n[inputs]",
+        );
+    fs::write(folder.path().join("undamped.toml"), undamped).unwrap();
+    let built: serde_json::Value =
+        serde_json::from_str(&output(folder.path(), &["build", "undamped.toml", "-o", "u.pcc", "--json"])).unwrap();
+    assert_eq!(built["components"][0]["stop"], "constant");
+    assert_eq!(built["components"][0]["terms"], 1);
+    assert_eq!(built["components"][1]["stop"], "accurate");
+    let compared = output(folder.path(), &["compare", "u.pcc", "--study", "undamped.toml", "-n", "100", "--json"]);
+    let compared: serde_json::Value = serde_json::from_str(&compared).unwrap();
+    assert!(compared["components"][1]["variance_error_percent"].as_f64().unwrap() < 1.0);
 }
 
 #[test]
@@ -363,16 +423,31 @@ fn completions_for_every_shell() {
 #[test]
 fn interruption_ends_with_130_and_no_file() {
     let folder = workplace();
-    let program = assert_cmd::cargo::cargo_bin("pcc");
-    let mut child = std::process::Command::new(program)
-        .current_dir(folder.path())
-        .args(["eval", "surrogate.pcc", "-n", "1e13", "--quiet"])
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(300));
-    let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(interrupted.success());
-    assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    let slow = format!(
+        "{}\n[design]\ninitial = 20000\nmaximum = 20000\n[fit]\nq_norm = 1.0\nmax_degree = 12\nepsilon_forward = 0.0\n",
+        text("surrogates/clutch-r8-eigenvalues.toml").replace("r8", "slow")
+    );
+    fs::write(folder.path().join("slow.toml"), slow).unwrap();
+    let rows: String = (0..2_000_000).map(|_| "0.25,16e6\n").collect();
+    fs::write(folder.path().join("many.csv"), format!("mu,k_p\n{rows}")).unwrap();
+    let before = fs::read_dir(folder.path()).unwrap().count();
+    let cases: [&[&str]; 4] = [
+        &["eval", "surrogate.pcc", "-n", "1e13"],
+        &["reference", "study.toml", "-n", "1e13"],
+        &["reference", "study.toml", "--points", "many.csv", "--out", "out.csv"],
+        &["build", "slow.toml"],
+    ];
+    for arguments in cases {
+        let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("pcc"))
+            .current_dir(folder.path())
+            .args(arguments)
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(700));
+        let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(interrupted.success(), "{arguments:?} had ended before");
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{arguments:?}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before, "{arguments:?}");
+    }
 }

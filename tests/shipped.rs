@@ -62,7 +62,7 @@ fn self_tests_hold() {
     }
 }
 
-/// Coefficients as far as they are portable: relative to the largest besides the mean.
+/// Coefficients to six decimals, which no processor's rounding reaches.
 fn portable_coefficients(surrogate: &Surrogate) -> String {
     let mut listing = String::new();
     for component in surrogate.components() {

@@ -115,6 +115,9 @@ impl<'a> Sections<'a> {
             let body = usize::try_from(length).ok().and_then(|length| reader.take(length));
             let body = body.ok_or_else(|| damaged(&format!("section {kind} is cut off")))?;
             let is_known = usize::from(kind) <= SECTION_NAMES.len() && version == 1;
+            if is_known && (flags == 1) != (kind != CERTIFICATES) {
+                return Err(damaged(&format!("section {kind} has the wrong flags")));
+            }
             if is_known {
                 known.push((kind, body));
             } else if flags & 1 == 1 {

@@ -1,7 +1,7 @@
 //! From the sections of format 1 to a surrogate in which everything holds.
 
 use super::error::ReadError;
-use super::meaning::{ensure, is_hash, not_finite};
+use super::meaning::{ensure, is_hash, is_printable, not_finite};
 use super::to_v1::global_element;
 use super::v1;
 use crate::index_set::{IndexSet, MultiIndex};
@@ -14,6 +14,10 @@ use crate::surrogate::{
 
 /// Degrees above this are refused, so that a forged index cannot exhaust memory.
 const HIGHEST_DEGREE: u16 = 1000;
+
+/// Points of a self-test, and the largest difference it may allow and still be a test.
+const SELF_TEST_POINTS: usize = 16;
+const LARGEST_TOLERANCE: f64 = 1e-6;
 
 /// Stored and computed recurrences and transforms differ by roundings at most.
 const ROUNDING: f64 = 1e-12;
@@ -47,6 +51,8 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
 fn provenance(meta: v1::Meta) -> Result<Provenance, ReadError> {
     let hashes = [&meta.problem_hash, &meta.study_hash, &meta.content_id];
     ensure("meta", hashes.iter().all(|hash| is_hash(hash)), || "a hash is not a hexadecimal SHA-256".to_owned())?;
+    let texts = [&meta.tool_version, &meta.study_name];
+    ensure("meta", texts.iter().all(|text| is_printable(text)), || "a name has control characters".to_owned())?;
     Ok(Provenance {
         tool_version: meta.tool_version,
         study_name: meta.study_name,
@@ -67,7 +73,7 @@ fn inputs(section: &v1::Inputs) -> Result<InputSpace, ReadError> {
         let transform_fits = close(center, uniform.center(), uniform.half_width())
             && close(half_width, uniform.half_width(), uniform.half_width());
         let bounds_fit = input.bounds.as_ref().is_none_or(|b| b.lower == lower && b.upper == upper);
-        if !(transform_fits && bounds_fit && !input.name.is_empty()) {
+        if !(transform_fits && bounds_fit && !input.name.is_empty() && is_printable(&input.name)) {
             return Err(meaning("name, transform or bounds do not fit the distribution".to_owned()));
         }
         inputs.push(Input { name: input.name.clone(), marginal: Marginal::Uniform(uniform) });
@@ -118,6 +124,9 @@ fn output(output: v1::Output) -> Result<Output, ReadError> {
     };
     let shape = (output.components.len(), output.modes.len());
     ensure("outputs", shape == kind.shape(), || format!("{}: wrong number of components or modes", output.name))?;
+    let printable = [&output.name, &output.unit].into_iter().all(|name| is_printable(name))
+        && output.components.iter().all(|component| is_printable(&component.name));
+    ensure("outputs", printable, || "a name has control characters".to_owned())?;
     let scaled = output.components.iter().all(|component| component.scale != 0.0);
     ensure("outputs", scaled, || format!("{}: a component has scale 0", output.name))?;
     let component = |component: v1::Component| Component {
@@ -244,7 +253,9 @@ fn self_test(section: v1::SelfTest, inputs: &InputSpace, components: usize) -> R
         && section.components.iter().all(|values| values.len() == components)
         && (section.components.len(), section.max_re.len()) == (points, points);
     ensure("self_test", shaped, || "points and values do not match in number".to_owned())?;
-    ensure("self_test", section.tolerance > 0.0, || "the tolerance is not above zero".to_owned())?;
+    let sensible = section.tolerance > 0.0 && section.tolerance <= LARGEST_TOLERANCE;
+    ensure("self_test", sensible, || format!("the tolerance is not above 0 and at most {LARGEST_TOLERANCE}"))?;
+    ensure("self_test", points == SELF_TEST_POINTS, || format!("there are not {SELF_TEST_POINTS} points"))?;
     Ok(SelfTest {
         points: section.points,
         components: section.components,

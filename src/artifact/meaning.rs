@@ -86,3 +86,8 @@ pub(super) fn ensure(section: &'static str, holds: bool, message: impl FnOnce() 
 pub(super) fn is_hash(hash: &str) -> bool {
     hash.len() == 64 && hash.bytes().all(|byte| byte.is_ascii_hexdigit() && !byte.is_ascii_uppercase())
 }
+
+/// Whether `text` can be shown on a terminal without commanding it.
+pub(super) fn is_printable(text: &str) -> bool {
+    !text.chars().any(char::is_control)
+}

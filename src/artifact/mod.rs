@@ -23,10 +23,12 @@ pub use save::{check_writable, save, save_with};
 pub use schema::schema;
 
 use crate::surrogate::Surrogate;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// Files above this size are refused before they are decoded: the largest sensible surrogates have some megabytes.
-const LARGEST_FILE: u64 = 1 << 30;
+const LARGEST_FILE: u64 = 1 << 28;
 
 /// The two forms of a surrogate file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -64,6 +66,8 @@ pub struct Artifact {
     pub version: (u16, u16),
     /// Hash over the sections that determine what the surrogate computes. Hexadecimal SHA-256.
     pub content_id: String,
+    /// Whether writing the surrogate again gives the same content; another writer may have arranged it differently.
+    pub is_canonical: bool,
     /// Kinds of optional sections this version does not know; they were skipped.
     pub unknown_sections: Vec<u16>,
 }
@@ -115,7 +119,8 @@ pub fn decode(bytes: &[u8]) -> Result<Artifact, ReadError> {
         return Err(ReadError::ContentId);
     }
     let surrogate = from_v1::surrogate(document)?;
-    Ok(Artifact { surrogate, format, version, content_id, unknown_sections })
+    let is_canonical = to_v1::document(&surrogate)?.meta.content_id == content_id;
+    Ok(Artifact { surrogate, format, version, content_id, is_canonical, unknown_sections })
 }
 
 /// Reads a surrogate file.
@@ -124,10 +129,9 @@ pub fn decode(bytes: &[u8]) -> Result<Artifact, ReadError> {
 ///
 /// [`ReadError::Io`] if the file cannot be read, else as [`decode`].
 pub fn read(path: &Path) -> Result<Artifact, ReadError> {
-    let io = |error: std::io::Error| ReadError::Io(error.to_string());
-    let length = std::fs::metadata(path).map_err(io)?.len();
-    if length > LARGEST_FILE {
-        return Err(ReadError::TooLarge { length, limit: LARGEST_FILE });
-    }
-    decode(&std::fs::read(path).map_err(io)?)
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
+        .map_err(|error| ReadError::Io(error.to_string()))?;
+    decode(&bytes)
 }

@@ -4,7 +4,7 @@ use super::error::WriteError;
 #[cfg(unix)]
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Writes `path` through a temporary file beside it: synced, renamed over the old file, folder synced. A reader sees the
@@ -23,7 +23,7 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 ///
 /// [`WriteError::Io`], also for an error that `write` returns; an existing file is then unchanged.
 pub fn save_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
-    replace(path, write).map_err(|error| failed(path, &error))
+    target(path).and_then(|target| replace(&target, write)).map_err(|error| failed(path, &error))
 }
 
 /// Whether [`save`] could write `path` now: asked before long work whose result would have no place.
@@ -32,7 +32,7 @@ pub fn save_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<(
 ///
 /// [`WriteError::Io`].
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
-    temporary(path).map(drop).map_err(|error| failed(path, &error))
+    target(path).and_then(|target| temporary(&target)).map(drop).map_err(|error| failed(path, &error))
 }
 
 fn failed(path: &Path, error: &io::Error) -> WriteError {
@@ -46,10 +46,19 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-fn temporary(path: &Path) -> io::Result<NamedTempFile> {
-    if path.is_dir() {
+/// Where the content goes: the file itself, or what a symbolic link points to.
+fn target(path: &Path) -> io::Result<PathBuf> {
+    let Ok(metadata) = std::fs::metadata(path) else { return Ok(path.to_owned()) };
+    if metadata.is_dir() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; name a file"));
     }
+    if !metadata.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device or a pipe; name a file"));
+    }
+    path.canonicalize()
+}
+
+fn temporary(path: &Path) -> io::Result<NamedTempFile> {
     if !folder(path).is_dir() {
         return Err(io::Error::new(io::ErrorKind::NotFound, "its folder does not exist; create it first"));
     }
@@ -95,6 +104,20 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         save(&path, b"new").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_devices_are_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        std::fs::write(&file, b"old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        save(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        assert!(check_writable(Path::new("/dev/null")).is_err());
+        assert!(save(Path::new("/dev/null"), b"new").is_err());
     }
 
     #[test]

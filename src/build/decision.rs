@@ -1,25 +1,27 @@
 //! How far the surrogate is off where stability is decided, from leave-one-out predictions.
 
+use crate::design::Run;
 use crate::fit::Fitted;
-use crate::spectrum::{Output, Spectrum};
+use crate::spectrum::{Output, spectral_abscissa};
 use crate::surrogate::{Decision, Quantile};
 
 /// Levels of the stored quantiles.
 const LEVELS: [f64; 9] = [0.005, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.995];
 
 /// Quantiles of (max Re of the model) − (max Re of its prediction without the point): every component is predicted from
-/// the other points, all predictions of a point are recombined together. `values` holds the components by id, one value per point.
-pub(super) fn decision(outputs: &[Output], fitted: &[Fitted], values: &[Vec<f64>], spectra: &[Spectrum]) -> Decision {
+/// the other points, all predictions of a point are recombined together.
+pub(super) fn decision(outputs: &[Output], fitted: &[Fitted], runs: &[Run]) -> Decision {
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
     let Some(left_out) = left_out else { return Decision::default() };
-    let mut residuals: Vec<f64> = spectra
+    let mut residuals: Vec<f64> = runs
         .iter()
         .enumerate()
-        .map(|(i, spectrum)| {
-            let predicted: Vec<f64> = values.iter().zip(&left_out).map(|(value, rest)| value[i] - rest[i]).collect();
+        .map(|(i, run)| {
+            let predicted: Vec<f64> =
+                run.components.iter().zip(&left_out).map(|(value, rest)| value - rest[i]).collect();
             let mut eigenvalues = Vec::new();
             outputs.iter().for_each(|output| output.recombine(&predicted, &mut eigenvalues));
-            spectrum.max_re() - eigenvalues.iter().map(|lambda| lambda.re).fold(f64::NEG_INFINITY, f64::max)
+            run.spectrum.max_re() - spectral_abscissa(&eigenvalues)
         })
         .collect();
     residuals.sort_by(f64::total_cmp);

@@ -18,12 +18,11 @@ const SELF_TEST_SEED: u64 = 0;
 pub(super) fn surrogate(
     study: &Study,
     evaluations: &Evaluations<'_>,
-    values: &[Vec<f64>],
     fitted: Vec<Fitted>,
     levels: Vec<u64>,
 ) -> Surrogate {
     let outputs = evaluations.outputs();
-    let decision = decision(&outputs, &fitted, values, evaluations.spectra());
+    let decision = decision(&outputs, &fitted, evaluations.runs());
     let mut surrogate = Surrogate {
         provenance: Provenance {
             tool_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -34,7 +33,7 @@ pub(super) fn surrogate(
         inputs: study.inputs.clone(),
         outputs,
         expansions: fitted.into_iter().map(expansion).collect(),
-        training: training(study, evaluations.spectra().len() as u64, levels),
+        training: training(study, evaluations.runs().len() as u64, levels),
         decision,
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         certificates: Vec::new(),

@@ -2,7 +2,6 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// How likely is this machine to squeal, flutter or whirl, given what is not known about it?
@@ -24,8 +23,8 @@ pub(super) struct Arguments {
     pub json: bool,
 
     /// Number of threads [default: all processors]; results do not depend on it
-    #[arg(long, global = true, value_name = "N", display_order = 101)]
-    pub threads: Option<NonZeroUsize>,
+    #[arg(long, global = true, value_name = "N", display_order = 101, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
 
     /// Show no progress
     #[arg(long, global = true, display_order = 102)]
@@ -90,7 +89,7 @@ pub(super) struct Run {
     pub output: PathBuf,
 
     /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for samples]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seed())]
     pub seed: Option<u64>,
 }
 
@@ -108,7 +107,7 @@ pub(super) struct Build {
     pub format: Option<FileFormat>,
 
     /// Seed of the design instead of the study's
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seed())]
     pub seed: Option<u64>,
 
     /// Print the study with every default filled in, and build nothing
@@ -132,7 +131,7 @@ pub(super) struct Sampling {
     pub samples: Option<u64>,
 
     /// Seed of the samples
-    #[arg(long, value_name = "S", default_value_t = 1)]
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
     pub seed: u64,
 
     /// CSV file of points to evaluate instead of samples
@@ -180,7 +179,7 @@ pub(super) struct Compare {
     pub samples: u64,
 
     /// Seed of the points
-    #[arg(long, value_name = "S", default_value_t = 1)]
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
     pub seed: u64,
 
     /// Exit with code 1 if the relative error of the stability proportion is larger
@@ -205,6 +204,11 @@ pub(super) struct Convert {
 
     /// Surrogate file to write: JSON if it ends in .json, else binary
     pub output: PathBuf,
+}
+
+/// Seeds that a study file can hold, too.
+fn seed() -> clap::builder::RangedU64ValueParser {
+    clap::value_parser!(u64).range(0..=i64::MAX as u64)
 }
 
 /// A whole number from 1, also written like 1e6 or 1_000_000.

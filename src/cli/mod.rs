@@ -5,6 +5,7 @@ mod commands;
 mod points;
 mod progress;
 
+use crate::progress::Interrupted;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -23,11 +24,6 @@ enum Ending {
     CheckFailed,
 }
 
-/// The user pressed Ctrl-C.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("interrupted")]
-struct Interrupted;
-
 /// What every command is given.
 struct Context {
     json: bool,
@@ -37,12 +33,7 @@ struct Context {
 impl Context {
     /// Prints a report: text for people, or one JSON document.
     fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
-        let text = if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() };
-        match io::stdout().write_all(text.as_bytes()) {
-            // A reader like `head` that has seen enough is no error.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            result => Ok(result?),
-        }
+        print(&if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() })
     }
 }
 
@@ -60,19 +51,28 @@ pub fn main() -> ExitCode {
     match run(arguments) {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::CheckFailed) => ExitCode::from(1),
-        Err(error) if error.is::<Interrupted>() => {
-            eprintln!("pcc: interrupted; nothing was written");
-            ExitCode::from(130)
-        }
         Err(error) => {
-            eprintln!("pcc: {error:#}");
-            ExitCode::from(2)
+            complain(&format!("{error:#}"));
+            ExitCode::from(if error.downcast_ref::<Interrupted>().is_some() { 130 } else { 2 })
         }
     }
 }
 
+/// A message on standard error; there is nobody to tell if that fails.
+fn complain(message: &str) {
+    let _ = writeln!(io::stderr(), "pcc: {message}");
+}
+
+/// Text on standard output. A reader like `head` that has seen enough is no error.
+fn print(text: &str) -> anyhow::Result<()> {
+    match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => Ok(result?),
+    }
+}
+
 fn run(arguments: Arguments) -> anyhow::Result<Ending> {
-    let threads = arguments.threads.map_or(0, |threads| threads.get());
+    let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let context = Context { json: arguments.json, terminal: Terminal::new(arguments.quiet, Interrupt::install()?) };
     pool.install(|| match arguments.command {

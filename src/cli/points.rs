@@ -2,9 +2,10 @@
 
 use crate::artifact::save_with;
 use crate::input::{InputError, InputSpace};
+use crate::progress::Observer;
 use nalgebra::Complex;
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 use thiserror::Error;
 
@@ -24,6 +25,12 @@ pub(super) enum PointsError {
     NotANumber { row: u64, name: String, found: String },
     #[error("row {row}: {cause}; move the point, or pass --extrapolate to evaluate it all the same")]
     Outside { row: u64, cause: InputError },
+    #[error(
+        "row {row}: cells and columns differ in number, {found} and {expected}; write one cell per column, and 0.25, not 0,25"
+    )]
+    RowLength { row: u64, found: usize, expected: usize },
+    #[error("row {row}: the surrogate has no finite value there; move the point closer to the domain")]
+    NotFinite { row: u64 },
     #[error("there are no points below the header")]
     Empty,
     #[error("{path}: {cause}")]
@@ -47,7 +54,8 @@ pub(super) struct Evaluated {
 /// A CSV file with one column per input.
 pub(super) struct PointsFile<'a> {
     path: String,
-    reader: csv::Reader<File>,
+    reader: csv::Reader<ShortLines<File>>,
+    header_length: usize,
     columns: Vec<usize>,
     inputs: &'a InputSpace,
     extrapolate: bool,
@@ -62,7 +70,10 @@ impl<'a> PointsFile<'a> {
     }
 
     fn find_columns(path: &str, inputs: &'a InputSpace, extrapolate: bool) -> Result<Self, PointsError> {
-        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).flexible(true).from_path(path)?;
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(ShortLines { inner: File::open(path).map_err(csv::Error::from)?, since_newline: 0 });
         let header = reader.headers()?.clone();
         let mut columns = Vec::new();
         for name in inputs.names() {
@@ -75,7 +86,7 @@ impl<'a> PointsFile<'a> {
                 return Err(PointsError::RepeatedColumn { name: name.to_owned() });
             }
         }
-        Ok(Self { path: path.to_owned(), reader, columns, inputs, extrapolate })
+        Ok(Self { path: path.to_owned(), reader, header_length: header.len(), columns, inputs, extrapolate })
     }
 
     /// The next points in physical coordinates; none at the end of the file.
@@ -84,6 +95,9 @@ impl<'a> PointsFile<'a> {
         let mut record = csv::StringRecord::new();
         while points.len() < GROUP && self.reader.read_record(&mut record)? {
             let row = first_row + points.len() as u64;
+            if record.len() != self.header_length {
+                return Err(PointsError::RowLength { row, found: record.len(), expected: self.header_length });
+            }
             let mut point = Vec::with_capacity(self.columns.len());
             for (&column, name) in self.columns.iter().zip(self.inputs.names()) {
                 let cell = record.get(column).unwrap_or_default();
@@ -107,6 +121,7 @@ impl<'a> PointsFile<'a> {
     pub fn evaluate(
         mut self,
         path: &Path,
+        observer: &dyn Observer,
         mut evaluate: impl FnMut(&[Vec<f64>]) -> anyhow::Result<Evaluated>,
     ) -> anyhow::Result<(u64, u64)> {
         let mut failure = None;
@@ -114,7 +129,7 @@ impl<'a> PointsFile<'a> {
         let written = save_with(path, |file| {
             let mut writer = csv::Writer::from_writer(file);
             loop {
-                let (points, found) = match self.evaluate_group(rows, &mut evaluate) {
+                let (points, found) = match self.evaluate_group(rows, observer, &mut evaluate) {
                     Ok(Some(group)) => group,
                     Ok(None) => return writer.flush(),
                     Err(error) => {
@@ -142,18 +157,48 @@ impl<'a> PointsFile<'a> {
     fn evaluate_group(
         &mut self,
         rows_before: u64,
+        observer: &dyn Observer,
         evaluate: &mut impl FnMut(&[Vec<f64>]) -> anyhow::Result<Evaluated>,
     ) -> anyhow::Result<Option<(Vec<Vec<f64>>, Evaluated)>> {
-        let group = self.group(rows_before + 1).and_then(|points| match (points.is_empty(), rows_before) {
-            (true, 0) => Err(PointsError::Empty),
-            _ => Ok(points),
-        });
-        let points = group.map_err(|cause| PointsError::InFile { path: self.path.clone(), cause: Box::new(cause) })?;
+        observer.check()?;
+        let path = self.path.clone();
+        let in_file = |cause| PointsError::InFile { path: path.clone(), cause: Box::new(cause) };
+        let points = self.group(rows_before + 1);
+        let points = points.map_err(in_file)?;
         if points.is_empty() {
-            return Ok(None);
+            return if rows_before == 0 { Err(in_file(PointsError::Empty).into()) } else { Ok(None) };
         }
         let found = evaluate(&points)?;
-        Ok(Some((points, found)))
+        match found.results.iter().position(|(_, max_re)| !max_re.is_finite()) {
+            Some(at) => Err(in_file(PointsError::NotFinite { row: rows_before + 1 + at as u64 }).into()),
+            None => Ok(Some((points, found))),
+        }
+    }
+}
+
+/// Refuses lines so long that they are not rows of numbers, before they fill the memory.
+struct ShortLines<R> {
+    inner: R,
+    since_newline: usize,
+}
+
+/// Bytes of a row that are read at most: thousands of columns.
+const LONGEST_LINE: usize = 1 << 20;
+
+impl<R: Read> Read for ShortLines<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let length = self.inner.read(buffer)?;
+        match buffer[..length].iter().rposition(|&byte| byte == b'\n') {
+            Some(newline) => self.since_newline = length - newline - 1,
+            None => self.since_newline += length,
+        }
+        if self.since_newline > LONGEST_LINE {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                "a row is longer than a megabyte; is this a CSV file?",
+            ));
+        }
+        Ok(length)
     }
 }
 

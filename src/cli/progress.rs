@@ -2,7 +2,6 @@
 
 use crate::progress::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::process;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,15 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Watches for Ctrl-C: the first press asks the work to stop, the second ends the process.
+    /// Watches for Ctrl-C: the work is asked to stop, and ends without leaving anything half-written.
     pub fn install() -> anyhow::Result<Self> {
         let flag = Arc::new(AtomicBool::new(false));
         let seen = flag.clone();
-        ctrlc::set_handler(move || {
-            if seen.swap(true, Ordering::SeqCst) {
-                process::exit(130);
-            }
-        })?;
+        ctrlc::set_handler(move || seen.store(true, Ordering::SeqCst))?;
         Ok(Self(flag))
     }
 }

@@ -5,5 +5,5 @@ mod run;
 mod samples;
 
 pub use latin_hypercube::NestedLatinHypercube;
-pub use run::{ModeCount, RunError, direct_computation};
+pub use run::{Run, RunError, Runner};
 pub use samples::Samples;

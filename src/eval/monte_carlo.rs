@@ -7,9 +7,9 @@
 use super::plan::{LANES, Plan};
 use super::points::Evaluator;
 use crate::input::random_point;
-use crate::progress::Observer;
+use crate::progress::{Interrupted, Observer};
 use crate::random::Purpose;
-use crate::spectrum::{Block, Summary};
+use crate::spectrum::Summary;
 use crate::surrogate::Surrogate;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -22,21 +22,34 @@ const CHUNK: u64 = 4096;
 const CHUNKS_IN_FLIGHT: u64 = 1024;
 
 /// Why an evaluation gave no result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum EvalError {
     /// Nothing to evaluate.
     #[error("no samples were asked for; use at least 1")]
     NoSamples,
+    /// A component is too large for double precision, or NaN.
+    #[error("the surrogate's value at {point} is not a finite number; the file is of no use there")]
+    NotFinite {
+        /// Where: the inputs with their values.
+        point: String,
+    },
     /// The user asked to stop.
-    #[error("interrupted")]
-    Interrupted,
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
+}
+
+impl EvalError {
+    /// Whether the user asked to stop.
+    pub fn is_interruption(&self) -> bool {
+        matches!(self, Self::Interrupted(_))
+    }
 }
 
 /// Statistics of samples 0 … `samples` − 1 under `seed`, on the current rayon thread pool.
 ///
 /// # Errors
 ///
-/// [`EvalError::NoSamples`] and [`EvalError::Interrupted`].
+/// [`EvalError`].
 pub fn monte_carlo(
     surrogate: &Surrogate,
     samples: u64,
@@ -53,32 +66,34 @@ pub fn monte_carlo(
     let mut first = 0;
     while first < chunks {
         let end = chunks.min(first + CHUNKS_IN_FLIGHT);
-        let parts: Vec<Summary> = (first..end)
+        let parts: Vec<Result<Summary, EvalError>> = (first..end)
             .into_par_iter()
             .map_init(
                 || Evaluator::new(surrogate, &plan),
                 |evaluator, chunk| {
-                    if observer.interrupted() {
-                        return Summary::new(0, 0);
-                    }
+                    observer.check()?;
                     let range = chunk * CHUNK..samples.min((chunk + 1) * CHUNK);
                     observer.advance(range.end - range.start);
-                    Summary::of(&evaluate_chunk(surrogate, evaluator, seed, range))
+                    summarise(surrogate, evaluator, seed, range)
                 },
             )
             .collect();
-        if observer.interrupted() {
-            observer.finish();
-            return Err(EvalError::Interrupted);
+        for part in parts {
+            summary.merge(&part.inspect_err(|_| observer.finish())?);
         }
-        parts.iter().for_each(|part| summary.merge(part));
         first = end;
     }
     observer.finish();
     Ok(summary)
 }
 
-fn evaluate_chunk(surrogate: &Surrogate, evaluator: &mut Evaluator<'_>, seed: u64, range: Range<u64>) -> Block {
+/// The statistics of one chunk of samples.
+fn summarise(
+    surrogate: &Surrogate,
+    evaluator: &mut Evaluator<'_>,
+    seed: u64,
+    range: Range<u64>,
+) -> Result<Summary, EvalError> {
     let mut block = evaluator.block(CHUNK as usize);
     for start in range.clone().step_by(LANES) {
         let lanes = LANES.min((range.end - start) as usize);
@@ -87,5 +102,12 @@ fn evaluate_chunk(surrogate: &Surrogate, evaluator: &mut Evaluator<'_>, seed: u6
         };
         evaluator.evaluate(lanes, set_point, &mut block);
     }
-    block
+    match block.first_not_finite() {
+        None => Ok(Summary::of(&block)),
+        Some(at) => {
+            let mut point = vec![0.0; surrogate.inputs.dimension()];
+            random_point(&surrogate.inputs, seed, Purpose::Evaluation, range.start + at as u64, &mut point);
+            Err(EvalError::NotFinite { point: surrogate.inputs.describe(&surrogate.inputs.physical(&point)) })
+        }
+    }
 }

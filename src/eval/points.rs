@@ -1,7 +1,7 @@
 //! A surrogate at given points.
 
 use super::plan::{LANES, Plan, Workspace};
-use crate::spectrum::Block;
+use crate::spectrum::{Block, spectral_abscissa};
 use crate::surrogate::Surrogate;
 use nalgebra::Complex;
 
@@ -63,7 +63,7 @@ impl<'a> Evaluator<'a> {
             for output in &self.surrogate.outputs {
                 output.recombine(&self.values, &mut self.eigenvalues);
             }
-            let max_re = self.eigenvalues.iter().map(|lambda| lambda.re).fold(f64::NEG_INFINITY, f64::max);
+            let max_re = spectral_abscissa(&self.eigenvalues);
             block.push(&self.values, &self.eigenvalues, max_re);
         }
     }

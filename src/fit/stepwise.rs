@@ -16,7 +16,8 @@ use std::collections::HashSet;
 
 use super::{Fitted, Stop};
 use crate::index_set::MultiIndex;
-use crate::regression::{ActiveBasis, BasisTables, variance};
+use crate::progress::{Interrupted, Observer};
+use crate::regression::{ActiveBasis, BasisTables, Response};
 use crate::study::Stepwise;
 
 /// Points required per term (step 4 of the paper).
@@ -27,18 +28,24 @@ const SAMPLES_PER_TERM: usize = 2;
 pub enum Outcome {
     /// The search ended.
     Fitted(Fitted),
-    /// The design is too small for the terms that matter; `best` is the expansion of the last degree that passed.
+    /// The design is too small for the terms that matter.
     TooFewSamples {
-        /// The last expansion with N ≥ 2 card(A).
-        best: Fitted,
+        /// The terms of the last degree that passed the size test: what [`settle`] fits if the design cannot grow.
+        indices: Vec<MultiIndex>,
+        /// That degree.
+        degree: u16,
     },
 }
 
 /// Fits one component.
 ///
-/// `values[i]` is the component at point i of `tables`, in its own unit. `shells[p]` holds the candidates with
+/// `response.values[i]` is the component at point i of `tables`, in its own unit. `shells[p]` holds the candidates with
 /// p − 1 < ‖α‖_q ≤ p, as [`crate::index_set::Hyperbolic::shells`] gives them for `settings.q_norm` and
 /// `settings.max_degree`.
+///
+/// # Errors
+///
+/// [`Interrupted`] soon after the observer asks to stop.
 ///
 /// # Examples
 ///
@@ -47,7 +54,8 @@ pub enum Outcome {
 /// use pcc::fit::stepwise::{Outcome, fit};
 /// use pcc::index_set::Hyperbolic;
 /// use pcc::polynomial::Family;
-/// use pcc::regression::BasisTables;
+/// use pcc::progress::Silent;
+/// use pcc::regression::{BasisTables, Response};
 /// use pcc::study::Stepwise;
 ///
 /// let settings = Stepwise {
@@ -59,44 +67,250 @@ pub enum Outcome {
 /// let values: Vec<f64> = samples.points().map(|x| 1.0 + x[0] * x[1]).collect();
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(8); 2], 8);
 /// let shells = Hyperbolic { inputs: 2, q_norm: 1.0 }.shells(8)?;
-/// let Outcome::Fitted(fitted) = fit(&tables, &values, &shells, &settings) else { panic!("60 points suffice") };
-/// assert!(fitted.errors.is_some_and(|errors| errors.r2 > 0.9999));
-/// # Ok::<(), pcc::index_set::IndexSetError>(())
+/// let response = Response { values: &values, resolution: 1e-13 };
+/// let outcome = fit(&tables, response, &shells, &settings, &Silent)?;
+/// assert!(matches!(outcome, Outcome::Fitted(fitted) if fitted.errors.unwrap().r2 > 0.9999));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn fit(tables: &BasisTables, values: &[f64], shells: &[Vec<MultiIndex>], settings: &Stepwise) -> Outcome {
+pub fn fit(
+    tables: &BasisTables,
+    response: Response<'_>,
+    shells: &[Vec<MultiIndex>],
+    settings: &Stepwise,
+    observer: &dyn Observer,
+) -> Result<Outcome, Interrupted> {
     let inputs = shells[0][0].len();
-    let Some(variance) = variance(values) else {
-        return Outcome::Fitted(Fitted::constant(inputs, values));
+    let Some(variance) = response.variance() else {
+        return Ok(Outcome::Fitted(Fitted::constant(inputs, response.values)));
     };
-    let mut basis = ActiveBasis::constant(tables, inputs, values, variance); // step 2: A = {0}
+    let samples = response.values.len();
+    let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?; // step 2: A = {0}
     for degree in 1..=settings.max_degree {
-        let before = basis.clone();
+        let before = basis.indices().to_vec();
         let candidates = &shells[usize::from(degree)];
-        forward_step(&mut basis, candidates, settings.epsilon_forward);
-        if basis.indices().len() < values.len() {
-            backward_step(&mut basis, candidates, settings.epsilon_backward);
+        let is_determined = forward_step(&mut basis, candidates, settings.epsilon_forward)?;
+        if is_determined {
+            backward_step(&mut basis, candidates, settings.epsilon_backward)?;
         }
-        if values.len() < SAMPLES_PER_TERM * basis.indices().len() {
-            let best = Fitted::new(&before, degree - 1, Stop::DesignExhausted);
-            return Outcome::TooFewSamples { best }; // step 4
+        if !is_determined || samples < SAMPLES_PER_TERM * basis.indices().len() {
+            return Ok(Outcome::TooFewSamples { indices: before, degree: degree - 1 }); // step 4
         }
         if basis.errors().s2.is_some_and(|s2| s2 >= settings.s2_target) {
-            return Outcome::Fitted(Fitted::new(&basis, degree, Stop::Accurate)); // step 5
+            return Ok(Outcome::Fitted(Fitted::new(&basis, degree, Stop::Accurate))); // step 5
         }
     }
-    Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree))
+    Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)))
 }
 
-/// Adds the candidates that, each alone, raise R² by at least `epsilon`.
-fn forward_step(basis: &mut ActiveBasis<'_>, candidates: &[MultiIndex], epsilon: f64) {
-    let gains = basis.gains(candidates);
-    let significant = candidates.iter().zip(gains).filter(|&(_, gain)| gain >= epsilon);
-    basis.extend(significant.map(|(alpha, _)| alpha.clone()).collect());
+/// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for.
+///
+/// # Errors
+///
+/// [`Interrupted`] soon after the observer asks to stop.
+pub fn settle(
+    tables: &BasisTables,
+    response: Response<'_>,
+    indices: &[MultiIndex],
+    degree: u16,
+    observer: &dyn Observer,
+) -> Result<Fitted, Interrupted> {
+    let inputs = indices[0].len();
+    let Some(variance) = response.variance() else {
+        return Ok(Fitted::constant(inputs, response.values));
+    };
+    let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?;
+    basis.extend(indices[1..].to_vec())?;
+    Ok(Fitted::new(&basis, degree, Stop::DesignExhausted))
+}
+
+/// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as points, adds
+/// nothing and returns false.
+fn forward_step(basis: &mut ActiveBasis<'_>, candidates: &[MultiIndex], epsilon: f64) -> Result<bool, Interrupted> {
+    let gains = basis.gains(candidates)?;
+    let significant = candidates.iter().zip(gains).filter(|&(_, gain)| gain > 0.0 && gain >= epsilon);
+    let significant: Vec<MultiIndex> = significant.map(|(alpha, _)| alpha.clone()).collect();
+    if basis.indices().len() + significant.len() >= basis.samples() {
+        return Ok(false);
+    }
+    basis.extend(significant)?;
+    Ok(true)
 }
 
 /// Drops the terms of lower degree, never {0}, that each alone lower R² by less than `epsilon`.
-fn backward_step(basis: &mut ActiveBasis<'_>, of_this_degree: &[MultiIndex], epsilon: f64) {
+fn backward_step(basis: &mut ActiveBasis<'_>, of_this_degree: &[MultiIndex], epsilon: f64) -> Result<(), Interrupted> {
     let losses = basis.losses();
     let protected: HashSet<&MultiIndex> = of_this_degree.iter().collect();
-    basis.retain(|k, alpha| alpha.is_constant() || protected.contains(alpha) || losses[k] >= epsilon);
+    basis.retain(|k, alpha| alpha.is_constant() || protected.contains(alpha) || losses[k] >= epsilon)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{NestedLatinHypercube, Samples};
+    use crate::index_set::Hyperbolic;
+    use crate::polynomial::Family;
+    use crate::progress::Silent;
+
+    const DEGREE: u16 = 8;
+
+    struct Problem {
+        samples: Samples,
+        tables: BasisTables,
+        shells: Vec<Vec<MultiIndex>>,
+    }
+
+    fn problem(points: usize, q_norm: f64) -> Problem {
+        let mut design = NestedLatinHypercube::new(2, 3);
+        design.grow_to(points);
+        let samples = design.samples(|_, u| 2.0 * u - 1.0);
+        let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); 2];
+        let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
+        Problem { samples, tables, shells: Hyperbolic { inputs: 2, q_norm }.shells(DEGREE).unwrap() }
+    }
+
+    impl Problem {
+        /// Values of an expansion with these terms.
+        fn values(&self, terms: &[([u16; 2], f64)]) -> Vec<f64> {
+            let indices: Vec<MultiIndex> = terms.iter().map(|(alpha, _)| MultiIndex::new(alpha.to_vec())).collect();
+            let columns = self.tables.columns(&indices);
+            (0..self.samples.len())
+                .map(|i| terms.iter().enumerate().map(|(k, (_, c))| c * columns[(i, k)]).sum())
+                .collect()
+        }
+
+        fn fit(&self, values: &[f64], settings: &Stepwise) -> Outcome {
+            fit(&self.tables, Response { values, resolution: 1e-13 }, &self.shells, settings, &Silent).unwrap()
+        }
+    }
+
+    fn settings(q_norm: f64, s2_target: f64) -> Stepwise {
+        Stepwise { max_degree: DEGREE, q_norm, s2_target, epsilon_forward: 1e-6, epsilon_backward: 1e-6 }
+    }
+
+    fn fitted(outcome: Outcome) -> Fitted {
+        match outcome {
+            Outcome::Fitted(fitted) => fitted,
+            Outcome::TooFewSamples { .. } => panic!("the design suffices"),
+        }
+    }
+
+    #[test]
+    fn a_sparse_polynomial_is_found_exactly_and_the_search_ends_at_its_degree() {
+        let problem = problem(60, 1.0);
+        let terms = [([0, 0], 3.0), ([1, 0], 2.0), ([0, 2], -1.0), ([2, 1], 0.5)];
+        let found = fitted(problem.fit(&problem.values(&terms), &settings(1.0, 0.999_999)));
+        assert_eq!((found.degree, found.stop), (3, Stop::Accurate));
+        for (alpha, coefficient) in terms {
+            let at = found.indices.iter().position(|index| **index == alpha).unwrap();
+            assert!((found.coefficients[at] - coefficient).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn candidates_of_a_shell_are_tested_against_the_set_before_it() {
+        // x² alone is uncorrelated with x³ on no finite design, so both join if each alone gains, whatever their order.
+        let problem = problem(40, 1.0);
+        let values = problem.values(&[([0, 0], 1.0), ([3, 0], 1.0), ([2, 1], 1.0)]);
+        let one_degree = Stepwise { max_degree: 3, epsilon_forward: 1e-3, epsilon_backward: 0.0, ..settings(1.0, 1.0) };
+        let found = fitted(problem.fit(&values, &one_degree));
+        let mut basis = ActiveBasis::constant(
+            &problem.tables,
+            2,
+            &values,
+            Response { values: &values, resolution: 0.0 }.variance().unwrap(),
+            &Silent,
+        )
+        .unwrap();
+        for shell in &problem.shells[1..=3] {
+            let gains = basis.gains(shell).unwrap();
+            let kept: Vec<_> =
+                shell.iter().zip(gains).filter(|&(_, gain)| gain >= 1e-3).map(|(alpha, _)| alpha.clone()).collect();
+            basis.extend(kept).unwrap();
+        }
+        let mut expected = basis.indices().to_vec();
+        expected.sort();
+        assert_eq!(found.indices[..], expected);
+    }
+
+    #[test]
+    fn backward_step_drops_lower_degrees_only_and_never_the_constant() {
+        let problem = problem(40, 1.0);
+        let values = problem.values(&[([2, 0], 1.0)]);
+        let variance = Response { values: &values, resolution: 0.0 }.variance().unwrap();
+        let mut basis = ActiveBasis::constant(&problem.tables, 2, &values, variance, &Silent).unwrap();
+        basis.extend([problem.shells[1].clone(), problem.shells[2].clone()].concat()).unwrap();
+        backward_step(&mut basis, &problem.shells[2], 1e-6).unwrap();
+        let expected = [problem.shells[0].clone(), problem.shells[2].clone()].concat();
+        assert_eq!(basis.indices(), expected, "degree 1 is useless and goes, degree 2 stays, useful or not");
+        backward_step(&mut basis, &problem.shells[3], 1e-6).unwrap();
+        assert_eq!(basis.indices(), [MultiIndex::constant(2), MultiIndex::new(vec![2, 0])]);
+    }
+
+    #[test]
+    fn exactly_two_points_per_term_are_enough() {
+        let terms = [([0, 0], 1.0), ([1, 0], 1.0), ([0, 1], 1.0), ([1, 1], 1.0)];
+        let only_these = |points: usize| {
+            let problem = problem(points, 1.0);
+            // ε small enough to keep all four, large enough to keep nothing else.
+            let settings =
+                Stepwise { max_degree: 2, epsilon_forward: 1e-9, epsilon_backward: 1e-9, ..settings(1.0, 1.0) };
+            let values = problem.values(&terms);
+            (problem.fit(&values, &settings), problem)
+        };
+        for points in 4..30 {
+            let (outcome, _) = only_these(points);
+            if let Outcome::Fitted(found) = outcome {
+                assert!(points >= 2 * found.indices.len());
+            }
+        }
+    }
+
+    #[test]
+    fn a_design_that_is_too_small_asks_for_more_and_settles_for_the_last_degree_that_passed() {
+        let problem = problem(12, 1.0);
+        let values: Vec<f64> = problem.samples.points().map(|x| (3.0 * x[0]).sin() * (2.0 * x[1]).exp()).collect();
+        let Outcome::TooFewSamples { indices, degree } = problem.fit(&values, &settings(1.0, 1.0)) else {
+            panic!("12 points do not carry this function");
+        };
+        assert!(12 >= 2 * indices.len() && indices[0].is_constant());
+        let response = Response { values: &values, resolution: 1e-13 };
+        let settled = settle(&problem.tables, response, &indices, degree, &Silent).unwrap();
+        assert_eq!((settled.degree, settled.stop), (degree, Stop::DesignExhausted));
+        assert_eq!(settled.indices.len(), indices.len());
+    }
+
+    #[test]
+    fn as_many_significant_terms_as_points_fail_the_size_test() {
+        let problem = problem(5, 1.0);
+        let values: Vec<f64> = problem.samples.points().map(|x| (3.0 * x[0] + x[1]).sin()).collect();
+        let eager = Stepwise { epsilon_forward: 0.0, ..settings(1.0, 1.0) };
+        assert!(matches!(problem.fit(&values, &eager), Outcome::TooFewSamples { .. }));
+    }
+
+    #[test]
+    fn values_that_do_not_vary_are_their_mean() {
+        let problem = problem(10, 1.0);
+        let values: Vec<f64> = (0..10).map(|i| 7.0 + 1e-15 * f64::from(i)).collect();
+        let found = fitted(problem.fit(&values, &settings(1.0, 0.999)));
+        assert_eq!((found.indices.len(), found.stop, found.errors), (1, Stop::Constant, None));
+        assert!((found.coefficients[0] - 7.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn an_interruption_ends_the_search() {
+        struct Stopped;
+        impl Observer for Stopped {
+            fn begin(&self, _: &str, _: u64) {}
+            fn advance(&self, _: u64) {}
+            fn finish(&self) {}
+            fn interrupted(&self) -> bool {
+                true
+            }
+        }
+        let problem = problem(10, 1.0);
+        let values: Vec<f64> = problem.samples.points().map(|x| x[0]).collect();
+        let response = Response { values: &values, resolution: 0.0 };
+        let outcome = fit(&problem.tables, response, &problem.shells, &settings(1.0, 0.999), &Stopped);
+        assert_eq!(outcome, Err(Interrupted));
+    }
 }

@@ -1,6 +1,7 @@
 //! The space of all uncertain inputs, independent of each other.
 
 use super::marginal::Marginal;
+use std::collections::HashSet;
 use thiserror::Error;
 
 /// One uncertain input.
@@ -63,10 +64,9 @@ impl InputSpace {
         if inputs.is_empty() {
             return Err(InputError::Empty);
         }
-        for (j, input) in inputs.iter().enumerate() {
-            if inputs[..j].iter().any(|before| before.name == input.name) {
-                return Err(InputError::Repeated { name: input.name.clone() });
-            }
+        let mut names = HashSet::new();
+        if let Some(input) = inputs.iter().find(|input| !names.insert(input.name.as_str())) {
+            return Err(InputError::Repeated { name: input.name.clone() });
         }
         Ok(Self(inputs))
     }

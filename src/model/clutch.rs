@@ -103,6 +103,12 @@ impl Clutch {
 
 impl Model for Clutch {
     fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+        for (&at, &value) in self.uncertain.iter().zip(point) {
+            let Parameter { name, range, .. } = CLUTCH_PARAMETERS[at];
+            if !range.contains(value) {
+                return Err(ModelError::OutOfRange { name, value, range: range.describe() });
+            }
+        }
         Ok(eigenvalues(self.state_matrix(point))?)
     }
 }

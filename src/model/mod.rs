@@ -22,6 +22,16 @@ pub enum ModelError {
         /// The names that exist.
         known: String,
     },
+    /// A parameter has a value that makes no sense.
+    #[error("{name} = {value}, but {name} must be {range}")]
+    OutOfRange {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        range: &'static str,
+    },
     /// The eigenvalue solver failed.
     #[error(transparent)]
     Eigenvalues(#[from] EigenvalueError),

@@ -7,6 +7,9 @@ use crate::statistics::{Moments, Proportion};
 use crate::study::Study;
 use crate::surrogate::Surrogate;
 
+/// Standard deviations below this share of the mean are rounding.
+const CONSTANT: f64 = 1e-12;
+
 /// Errors of one component, relative to the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComponentError {
@@ -19,13 +22,19 @@ pub struct ComponentError {
 }
 
 impl ComponentError {
-    /// 100 |difference of the means|/|mean of the model|.
-    pub fn mean_error_percent(&self) -> f64 {
+    /// 100 |difference of the means|/|mean of the model|; `None` if the model's is zero.
+    pub fn mean_error_percent(&self) -> Option<f64> {
         relative_error_percent(self.surrogate.mean(), self.model.mean())
     }
 
-    /// 100 |difference of the variances|/variance of the model.
-    pub fn variance_error_percent(&self) -> f64 {
+    /// 100 |difference of the variances|/variance of the model; 0 if both only vary by rounding, `None` if only the
+    /// model's is zero.
+    pub fn variance_error_percent(&self) -> Option<f64> {
+        let rounding = CONSTANT * self.model.mean().abs();
+        let is_constant = |moments: &Moments| moments.variance() <= rounding * rounding;
+        if is_constant(&self.model) && is_constant(&self.surrogate) {
+            return Some(0.0);
+        }
         relative_error_percent(self.surrogate.variance(), self.model.variance())
     }
 }
@@ -58,8 +67,9 @@ impl Comparison {
         Proportion { hits: self.stable_surrogate, samples: self.samples }.value()
     }
 
-    /// 100 |difference of the proportions|/proportion of the model.
-    pub fn relative_error_percent(&self) -> f64 {
+    /// 100 |difference of the proportions|/proportion of the model; `None` if the model is never stable and the surrogate
+    /// sometimes is.
+    pub fn relative_error_percent(&self) -> Option<f64> {
         relative_error_percent(self.stable_surrogate as f64, self.stable_model as f64)
     }
 
@@ -69,9 +79,9 @@ impl Comparison {
     }
 }
 
-/// 100 |found − truth|/|truth|; 0 if both are equal, infinite if only the truth is zero.
-fn relative_error_percent(found: f64, truth: f64) -> f64 {
-    if found == truth { 0.0 } else { 100.0 * ((found - truth) / truth).abs() }
+/// 100 |found − truth|/|truth|; 0 if they are equal, `None` if only the truth is zero.
+fn relative_error_percent(found: f64, truth: f64) -> Option<f64> {
+    if found == truth { Some(0.0) } else { (truth != 0.0).then(|| 100.0 * ((found - truth) / truth).abs()) }
 }
 
 /// Evaluates `surrogate` and the model of `study` at samples 0 … `samples` − 1 under `seed`.
@@ -87,9 +97,12 @@ pub fn compare(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Comparison, ReferenceError> {
-    let (of_surrogate, of_study) = (&surrogate.provenance.problem_hash, study.problem_hash());
-    if *of_surrogate != of_study {
-        return Err(ReferenceError::OtherProblem { surrogate: of_surrogate.clone(), study: of_study });
+    let other_problem = || ReferenceError::OtherProblem {
+        surrogate: surrogate.provenance.problem_hash.clone(),
+        study: study.problem_hash(),
+    };
+    if surrogate.provenance.problem_hash != study.problem_hash() || surrogate.inputs != study.inputs {
+        return Err(other_problem());
     }
     let plan = Plan::new(surrogate);
     let mut comparison = Comparison {
@@ -108,9 +121,15 @@ pub fn compare(
             })
             .collect(),
     };
-    for_each_chunk(study, samples, seed, observer, |_, runs| {
-        let points: Vec<&[f64]> = runs.iter().map(|run| run.standardized.as_slice()).collect();
-        let block = evaluate_points(surrogate, &plan, &points);
+    for_each_chunk(study, samples, seed, observer, |runner, points, runs| {
+        if study.spectrum.target.outputs(runner.modes()) != surrogate.outputs {
+            return Err(other_problem());
+        }
+        let block = evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        if let Some(at) = block.first_not_finite() {
+            let point = study.inputs.describe(&study.inputs.physical(&points[at]));
+            return Err(ReferenceError::NotFinite { point });
+        }
         for (run, &max_re) in runs.iter().zip(&block.max_re) {
             let (model, found) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
             comparison.stable_model += u64::from(model);
@@ -120,8 +139,10 @@ pub fn compare(
         }
         for (id, component) in comparison.components.iter_mut().enumerate() {
             component.surrogate.merge(&Moments::of(&block.components[id]));
-            component.model.merge(&runs.iter().map(|run| run.components[id]).collect());
+            let values: Vec<f64> = runs.iter().map(|run| run.components[id]).collect();
+            component.model.merge(&Moments::of(&values));
         }
+        Ok(())
     })?;
     Ok(comparison)
 }

@@ -2,8 +2,6 @@
 
 mod compare;
 mod monte_carlo;
-mod runner;
 
 pub use compare::{Comparison, ComponentError, compare};
 pub use monte_carlo::{Reference, ReferenceError, monte_carlo};
-pub use runner::{Run, Runner};

@@ -1,7 +1,6 @@
 //! Monte Carlo on the initial model.
 
-use super::runner::{Run, Runner};
-use crate::design::RunError;
+use crate::design::{Run, RunError, Runner};
 use crate::input::random_point;
 use crate::model::ModelError;
 use crate::progress::Observer;
@@ -36,19 +35,29 @@ pub enum ReferenceError {
         /// Hash of the study.
         study: String,
     },
-    /// The user asked to stop.
-    #[error("interrupted")]
-    Interrupted,
+    /// The surrogate has no finite value at a point.
+    #[error("the surrogate's value at {point} is not a finite number; the file is of no use there")]
+    NotFinite {
+        /// Where: the inputs with their values.
+        point: String,
+    },
+}
+
+impl ReferenceError {
+    /// Whether the user asked to stop.
+    pub fn is_interruption(&self) -> bool {
+        matches!(self, Self::Run(RunError::Interrupted(_)))
+    }
 }
 
 /// Runs the model at samples 0 … `samples` − 1 of the study's input space, the points that
-/// [`crate::eval::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order.
+/// [`crate::eval::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized points and runs.
 pub(super) fn for_each_chunk(
     study: &Study,
     samples: u64,
     seed: u64,
     observer: &dyn Observer,
-    mut consume: impl FnMut(&Runner<'_>, &[Run]),
+    mut consume: impl FnMut(&Runner<'_>, &[Vec<f64>], &[Run]) -> Result<(), ReferenceError>,
 ) -> Result<(), ReferenceError> {
     if samples == 0 {
         return Err(ReferenceError::NoSamples);
@@ -56,17 +65,16 @@ pub(super) fn for_each_chunk(
     let mut runner = Runner::new(study)?;
     observer.begin("model runs", samples);
     for start in (0..samples).step_by(CHUNK as usize) {
-        let points = (start..samples.min(start + CHUNK)).map(|index| {
-            let mut point = vec![0.0; study.inputs.dimension()];
-            random_point(&study.inputs, seed, Purpose::Evaluation, index, &mut point);
-            point
-        });
-        let runs = runner.run(&points.collect::<Vec<_>>())?;
-        consume(&runner, &runs);
-        observer.advance(runs.len() as u64);
-        if observer.interrupted() {
-            return Err(ReferenceError::Interrupted);
-        }
+        let standardized: Vec<Vec<f64>> = (start..samples.min(start + CHUNK))
+            .map(|index| {
+                let mut point = vec![0.0; study.inputs.dimension()];
+                random_point(&study.inputs, seed, Purpose::Evaluation, index, &mut point);
+                point
+            })
+            .collect();
+        let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
+        let runs = runner.run(&physical, observer)?;
+        consume(&runner, &standardized, &runs)?;
     }
     observer.finish();
     Ok(())
@@ -94,7 +102,7 @@ pub fn monte_carlo(
     observer: &dyn Observer,
 ) -> Result<Reference, ReferenceError> {
     let mut reference: Option<Reference> = None;
-    for_each_chunk(study, samples, seed, observer, |runner, runs| {
+    for_each_chunk(study, samples, seed, observer, |runner, _, runs| {
         let (components, modes) = (runs[0].components.len(), runner.modes().len());
         let mut block = Block::with_capacity(components, modes, runs.len());
         for run in runs {
@@ -105,6 +113,7 @@ pub fn monte_carlo(
             summary: Summary::new(components, modes),
         };
         reference.get_or_insert_with(empty).summary.merge(&Summary::of(&block));
+        Ok(())
     })?;
     reference.ok_or(ReferenceError::NoSamples)
 }

@@ -5,6 +5,7 @@ use crate::design::Samples;
 use crate::index_set::MultiIndex;
 use crate::numerics::qr::ColumnQr;
 use crate::polynomial::Recurrence;
+use crate::progress::{Interrupted, Observer};
 use nalgebra::{DMatrix, DVector};
 
 /// Candidates evaluated together: wide enough for fast matrix products, small enough for the cache.
@@ -60,8 +61,11 @@ impl BasisTables {
     }
 }
 
+/// Terms that are orthogonalised between two looks at whether the user asked to stop.
+const EXTENSION_BLOCK: usize = 128;
+
 /// A set A of multi-indices with the least-squares fit of one component on it.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct ActiveBasis<'a> {
     tables: &'a BasisTables,
     values: &'a [f64],
@@ -70,11 +74,22 @@ pub struct ActiveBasis<'a> {
     indices: Vec<MultiIndex>,
     qr: ColumnQr,
     residual: DVector<f64>,
+    observer: &'a dyn Observer,
 }
 
 impl<'a> ActiveBasis<'a> {
     /// A = {0}: the fit by a constant. `values[i]` belongs to point i of `tables`; `variance` is their V̂, not zero.
-    pub fn constant(tables: &'a BasisTables, inputs: usize, values: &'a [f64], variance: f64) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`], like every method that takes long.
+    pub fn constant(
+        tables: &'a BasisTables,
+        inputs: usize,
+        values: &'a [f64],
+        variance: f64,
+        observer: &'a dyn Observer,
+    ) -> Result<Self, Interrupted> {
         let mut basis = Self {
             tables,
             values,
@@ -82,9 +97,15 @@ impl<'a> ActiveBasis<'a> {
             indices: Vec::new(),
             qr: ColumnQr::new(values.len()),
             residual: DVector::zeros(0),
+            observer,
         };
-        basis.extend(vec![MultiIndex::constant(inputs)]);
-        basis
+        basis.extend(vec![MultiIndex::constant(inputs)])?;
+        Ok(basis)
+    }
+
+    /// Number of points N.
+    pub fn samples(&self) -> usize {
+        self.values.len()
     }
 
     /// The accepted multi-indices, in the order of their acceptance; {0} comes first.
@@ -94,10 +115,15 @@ impl<'a> ActiveBasis<'a> {
 
     /// For each candidate α, by how much R² would rise if it alone joined A:
     /// (ψᵀe)²/‖ψ_⊥‖² relative to N V̂, with the residual e and the part ψ_⊥ of ψ orthogonal to A.
-    pub fn gains(&self, candidates: &[MultiIndex]) -> Vec<f64> {
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`].
+    pub fn gains(&self, candidates: &[MultiIndex]) -> Result<Vec<f64>, Interrupted> {
         let total = self.total_variation();
         let mut gains = Vec::with_capacity(candidates.len());
         for block in candidates.chunks(CANDIDATE_BLOCK) {
+            self.observer.check()?;
             let columns = self.tables.columns(block);
             let products = columns.tr_mul(&self.residual);
             let lengths = self.qr.orthogonal_lengths_squared(&columns);
@@ -109,7 +135,7 @@ impl<'a> ActiveBasis<'a> {
                 ),
             );
         }
-        gains
+        Ok(gains)
     }
 
     /// For each accepted α, by how much R² would fall if it alone left A: β_α²/((ΨᵀΨ)⁻¹)_αα relative to N V̂.
@@ -121,20 +147,32 @@ impl<'a> ActiveBasis<'a> {
     }
 
     /// Adds `candidates` to A, but for those that depend linearly on what is there.
-    pub fn extend(&mut self, candidates: Vec<MultiIndex>) {
-        let accepted = self.qr.append(&self.tables.columns(&candidates));
-        let independent = candidates.into_iter().zip(accepted).filter(|(_, accepted)| *accepted);
-        self.indices.extend(independent.map(|(alpha, _)| alpha));
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`].
+    pub fn extend(&mut self, candidates: Vec<MultiIndex>) -> Result<(), Interrupted> {
+        for block in candidates.chunks(EXTENSION_BLOCK) {
+            self.observer.check()?;
+            let accepted = self.qr.append(&self.tables.columns(block));
+            let independent = block.iter().zip(accepted).filter(|(_, accepted)| *accepted);
+            self.indices.extend(independent.map(|(alpha, _)| alpha.clone()));
+        }
         self.residual = self.qr.residual(self.values);
+        Ok(())
     }
 
     /// Keeps the terms for which `keep` holds, given position and multi-index.
-    pub fn retain(&mut self, keep: impl Fn(usize, &MultiIndex) -> bool) {
-        let Some(first) = (0..self.indices.len()).find(|&k| !keep(k, &self.indices[k])) else { return };
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`].
+    pub fn retain(&mut self, keep: impl Fn(usize, &MultiIndex) -> bool) -> Result<(), Interrupted> {
+        let Some(first) = (0..self.indices.len()).find(|&k| !keep(k, &self.indices[k])) else { return Ok(()) };
         let rest: Vec<MultiIndex> = self.indices.drain(first..).collect();
         self.qr.truncate(first);
         let kept = rest.into_iter().enumerate().filter(|(k, alpha)| keep(first + k, alpha));
-        self.extend(kept.map(|(_, alpha)| alpha).collect());
+        self.extend(kept.map(|(_, alpha)| alpha).collect())
     }
 
     /// Least-squares coefficients β, one per index in `indices()`.
@@ -166,7 +204,8 @@ mod tests {
     use crate::design::NestedLatinHypercube;
     use crate::index_set::Hyperbolic;
     use crate::polynomial::Family;
-    use crate::regression::variance;
+    use crate::progress::Silent;
+    use crate::statistics::Moments;
 
     /// Closed forms and explicit refits differ by rounding only.
     const TOLERANCE: f64 = 1e-10;
@@ -185,14 +224,18 @@ mod tests {
         Problem { samples, values, recurrences: vec![Family::Legendre.recurrence(6); 2] }
     }
 
+    fn variance(values: &[f64]) -> f64 {
+        Moments::of(values).variance()
+    }
+
     fn indices(degree: u16) -> Vec<MultiIndex> {
         let shells = Hyperbolic { inputs: 2, q_norm: 0.8 }.shells(degree).unwrap();
         shells[1..].concat()
     }
 
     fn fitted<'a>(tables: &'a BasisTables, values: &'a [f64], terms: Vec<MultiIndex>) -> ActiveBasis<'a> {
-        let mut basis = ActiveBasis::constant(tables, 2, values, variance(values).unwrap());
-        basis.extend(terms);
+        let mut basis = ActiveBasis::constant(tables, 2, values, variance(values), &Silent).unwrap();
+        basis.extend(terms).unwrap();
         basis
     }
 
@@ -214,7 +257,7 @@ mod tests {
             assert!((values[i] - prediction - closed_form[i]).abs() < TOLERANCE);
             sum_of_squares += (values[i] - prediction).powi(2);
         }
-        let s2 = 1.0 - sum_of_squares / 40.0 / variance(&values).unwrap();
+        let s2 = 1.0 - sum_of_squares / 40.0 / variance(&values);
         assert!((basis.errors().s2.unwrap() - s2).abs() < TOLERANCE);
     }
 
@@ -224,7 +267,7 @@ mod tests {
         let tables = BasisTables::new(&samples, &recurrences, 6);
         let (inside, outside) = (indices(3), indices(5).split_off(indices(3).len()));
         let basis = fitted(&tables, &values, inside.clone());
-        for (candidate, gain) in outside.iter().zip(basis.gains(&outside)) {
+        for (candidate, gain) in outside.iter().zip(basis.gains(&outside).unwrap()) {
             let mut larger = inside.clone();
             larger.push(candidate.clone());
             let rise = fitted(&tables, &values, larger).errors().r2 - basis.errors().r2;
@@ -232,7 +275,7 @@ mod tests {
         }
         for (k, loss) in basis.losses().into_iter().enumerate().skip(1) {
             let mut smaller = basis.clone();
-            smaller.retain(|position, _| position != k);
+            smaller.retain(|position, _| position != k).unwrap();
             let fall = basis.errors().r2 - smaller.errors().r2;
             assert!((loss - fall).abs() < TOLERANCE, "term {k}: {loss} against {fall}");
         }
@@ -244,8 +287,8 @@ mod tests {
         let tables = BasisTables::new(&samples, &recurrences, 6);
         let mut basis = fitted(&tables, &values, indices(3));
         let before = basis.indices().to_vec();
-        assert!(basis.gains(&before).iter().all(|&gain| gain == 0.0));
-        basis.extend(before.clone());
+        assert!(basis.gains(&before).unwrap().iter().all(|&gain| gain == 0.0));
+        basis.extend(before.clone()).unwrap();
         assert_eq!(basis.indices(), before);
     }
 }

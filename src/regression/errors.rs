@@ -2,10 +2,6 @@
 
 use crate::statistics::Moments;
 
-/// Values that vary by less than this share of their magnitude are constant but for rounding in the model: eigenvalues
-/// carry about 1e-14 of relative error.
-const CONSTANT: f64 = 1e-13;
-
 /// Leverages closer to one than this leave a leave-one-out residual undetermined.
 const LEVERAGE_MARGIN: f64 = 1e-10;
 
@@ -46,9 +42,19 @@ pub fn leave_one_out_residuals(residuals: &[f64], leverages: &[f64]) -> Option<V
         .collect()
 }
 
-/// V̂ = Σ(y_i − ȳ)²/(N − 1), or `None` if the values are constant but for rounding.
-pub fn variance(values: &[f64]) -> Option<f64> {
-    let moments = Moments::of(values);
-    let rounding = CONSTANT * moments.maximum().abs().max(moments.minimum().abs());
-    (moments.variance() > rounding * rounding).then(|| moments.variance())
+/// The values of one component on a design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response<'a> {
+    /// One value per point.
+    pub values: &'a [f64],
+    /// Differences up to this size are rounding of the model, in the unit of the values.
+    pub resolution: f64,
+}
+
+impl Response<'_> {
+    /// V̂ = Σ(y_i − ȳ)²/(N − 1), or `None` if the values are constant but for rounding.
+    pub fn variance(&self) -> Option<f64> {
+        let variance = Moments::of(self.values).variance();
+        (variance > self.resolution * self.resolution).then_some(variance)
+    }
 }

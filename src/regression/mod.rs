@@ -4,4 +4,4 @@ mod basis;
 mod errors;
 
 pub use basis::{ActiveBasis, BasisTables};
-pub use errors::{ErrorMeasures, leave_one_out_residuals, variance};
+pub use errors::{ErrorMeasures, Response, leave_one_out_residuals};

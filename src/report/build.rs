@@ -5,6 +5,9 @@ use crate::surrogate::{StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
+/// S² below which an expansion says hardly more than the mean.
+const POOR: f64 = 0.5;
+
 /// The result of a build.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BuildReport {
@@ -122,6 +125,10 @@ impl fmt::Display for BuildReport {
         writeln!(f, "{}", FitReport::table(&self.components))?;
         if self.components.iter().any(|fit| fit.stop == StopReason::DesignExhausted.describe()) {
             writeln!(f, "The design reached design.maximum before the fit was accurate; raise it for more.")?;
+        }
+        for fit in self.components.iter().filter(|fit| fit.s2.is_some_and(|s2| s2 < POOR)) {
+            let name = &fit.name;
+            writeln!(f, "{name} is poorly fitted: it predicts points left out hardly better than its mean does.")?;
         }
         writeln!(f, "written to {} ({} bytes)", self.file, count(self.bytes))
     }

@@ -20,8 +20,8 @@ pub struct CompareReport {
     pub proportion_model: f64,
     /// The surrogate's share of stable points.
     pub proportion_surrogate: f64,
-    /// Relative error of the share.
-    pub relative_error_percent: f64,
+    /// Relative error of the share; null if the model is never stable and the surrogate sometimes is.
+    pub relative_error_percent: Option<f64>,
     /// Points on whose stability the two disagree.
     pub misclassified_percent: f64,
     /// Points that the surrogate calls stable and the model unstable.
@@ -29,9 +29,9 @@ pub struct CompareReport {
     /// Points that the surrogate calls unstable and the model stable.
     pub falsely_unstable: u64,
     /// Largest error of the mean of Re λ among the modes: the paper's mean error.
-    pub largest_mean_error_percent: f64,
+    pub largest_mean_error_percent: Option<f64>,
     /// Largest error of the variance of Re λ among the modes: the paper's variance error.
-    pub largest_variance_error_percent: f64,
+    pub largest_variance_error_percent: Option<f64>,
     /// Every component.
     pub components: Vec<ComponentErrors>,
     /// Wall-clock time.
@@ -47,14 +47,14 @@ pub struct ComponentErrors {
     pub mean_model: f64,
     /// Mean of the surrogate.
     pub mean_surrogate: f64,
-    /// Relative error of the mean.
-    pub mean_error_percent: f64,
+    /// Relative error of the mean; null if the model's is zero.
+    pub mean_error_percent: Option<f64>,
     /// Variance of the model.
     pub variance_model: f64,
     /// Variance of the surrogate.
     pub variance_surrogate: f64,
-    /// Relative error of the variance.
-    pub variance_error_percent: f64,
+    /// Relative error of the variance; null if the model's is zero.
+    pub variance_error_percent: Option<f64>,
 }
 
 impl CompareReport {
@@ -79,8 +79,9 @@ impl CompareReport {
                 variance_error_percent: component.variance_error_percent(),
             })
             .collect();
-        let largest = |error: fn(&ComponentErrors) -> f64| {
-            components.iter().filter(|component| component.name.starts_with("re_")).map(error).fold(0.0, f64::max)
+        let largest = |error: fn(&ComponentErrors) -> Option<f64>| {
+            let real_parts = components.iter().filter(|component| component.name.starts_with("re_"));
+            real_parts.filter_map(error).reduce(f64::max)
         };
         Self {
             study: study.to_owned(),
@@ -101,6 +102,11 @@ impl CompareReport {
     }
 }
 
+/// Three digits, or a dash where an error has no meaning.
+fn percentage(error: Option<f64>) -> String {
+    error.map_or("–".to_owned(), |error| significant(error, 3))
+}
+
 impl fmt::Display for CompareReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -114,7 +120,7 @@ impl fmt::Display for CompareReport {
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         writeln!(f, "  stable, model          {}", percent(self.proportion_model))?;
         writeln!(f, "  stable, surrogate      {}", percent(self.proportion_surrogate))?;
-        writeln!(f, "  relative error         {} %", significant(self.relative_error_percent, 3))?;
+        writeln!(f, "  relative error         {} %", percentage(self.relative_error_percent))?;
         writeln!(
             f,
             "  misclassified          {} %   {} falsely stable, {} falsely unstable",
@@ -125,8 +131,8 @@ impl fmt::Display for CompareReport {
         writeln!(
             f,
             "  largest error, Re λ    mean {} %, variance {} %\n",
-            significant(self.largest_mean_error_percent, 3),
-            significant(self.largest_variance_error_percent, 3)
+            percentage(self.largest_mean_error_percent),
+            percentage(self.largest_variance_error_percent)
         )?;
         let right = Align::Right;
         let mut table = Table::new(&[
@@ -143,10 +149,10 @@ impl fmt::Display for CompareReport {
                 component.name.clone(),
                 significant(component.mean_model, 6),
                 significant(component.mean_surrogate, 6),
-                significant(component.mean_error_percent, 3),
+                percentage(component.mean_error_percent),
                 significant(component.variance_model, 5),
                 significant(component.variance_surrogate, 5),
-                significant(component.variance_error_percent, 3),
+                percentage(component.variance_error_percent),
             ]);
         }
         write!(f, "{table}")

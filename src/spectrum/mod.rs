@@ -6,6 +6,6 @@ mod summary;
 mod target;
 
 pub use modes::{Spectrum, SpectrumError};
-pub use recombination::{Component, Output, OutputKind};
+pub use recombination::{Component, Output, OutputKind, spectral_abscissa};
 pub use summary::{Block, ModeSummary, Summary};
 pub use target::{Modes, Target};

@@ -40,6 +40,7 @@ pub enum SpectrumError {
 pub struct Spectrum {
     oscillating: Vec<Complex<f64>>,
     max_re: f64,
+    largest: f64,
 }
 
 impl Spectrum {
@@ -60,7 +61,7 @@ impl Spectrum {
             .ok_or(SpectrumError::OnlyRigid)?;
         let mut oscillating: Vec<_> = eigenvalues.iter().filter(|lambda| lambda.im > threshold).copied().collect();
         oscillating.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
-        Ok(Self { oscillating, max_re })
+        Ok(Self { oscillating, max_re, largest })
     }
 
     /// Number of oscillating modes.
@@ -78,6 +79,11 @@ impl Spectrum {
             .and_then(|at| self.oscillating.get(at))
             .copied()
             .ok_or(SpectrumError::NoSuchMode { mode, count: self.count() })
+    }
+
+    /// max |λ|, in 1/s: the scale of rounding errors in all eigenvalues.
+    pub fn largest(&self) -> f64 {
+        self.largest
     }
 
     /// Spectral abscissa max Re λ over every eigenvalue that is not a rigid-body zero, real ones included, in 1/s. The

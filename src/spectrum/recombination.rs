@@ -59,3 +59,26 @@ impl Output {
         }
     }
 }
+
+/// max Re λ, in 1/s; NaN if any part of an eigenvalue is NaN, so that no broken value passes for stable.
+#[inline]
+pub fn spectral_abscissa(eigenvalues: &[Complex<f64>]) -> f64 {
+    eigenvalues.iter().fold(f64::NEG_INFINITY, |largest, lambda| {
+        if lambda.im.is_nan() || lambda.re.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(lambda.re) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spectral_abscissa_is_the_largest_real_part_and_never_hides_nan() {
+        let lambda = Complex::new;
+        assert_eq!(spectral_abscissa(&[lambda(-2.0, 1.0), lambda(-1.0, 5.0)]), -1.0);
+        for broken in [lambda(f64::NAN, 1.0), lambda(-1.0, f64::NAN)] {
+            assert!(spectral_abscissa(&[broken, lambda(-1.0, 0.0)]).is_nan());
+            assert!(spectral_abscissa(&[lambda(-1.0, 0.0), broken]).is_nan());
+        }
+    }
+}

@@ -106,6 +106,11 @@ impl Block {
         }
     }
 
+    /// The first sample whose max Re λ is not finite, because a component overflowed.
+    pub fn first_not_finite(&self) -> Option<usize> {
+        self.max_re.iter().position(|max_re| !max_re.is_finite())
+    }
+
     /// Adds one sample.
     #[inline]
     pub fn push(&mut self, components: &[f64], eigenvalues: &[Complex<f64>], max_re: f64) {

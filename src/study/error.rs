@@ -82,6 +82,19 @@ pub enum StudyError {
         /// Where.
         place: Place,
     },
+    /// The design and the degree together need more memory than there is.
+    #[error(
+        "design.maximum ({maximum}) with {inputs} inputs and fit.max_degree {max_degree} would need more than two \
+         gigabytes of polynomial values; lower one of them"
+    )]
+    TooLarge {
+        /// Number of inputs.
+        inputs: usize,
+        /// Highest degree.
+        max_degree: u16,
+        /// Largest design.
+        maximum: usize,
+    },
     /// The inputs do not form a space.
     #[error("{place}: {cause}")]
     Inputs {

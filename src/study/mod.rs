@@ -62,7 +62,7 @@ impl Study {
     ///
     /// [`StudyError`] names the key and the line, what was found and what to do.
     pub fn from_toml(text: &str) -> Result<Self, StudyError> {
-        validate::study(raw::parse(text)?, text)
+        validate::study(text)
     }
 
     /// The study as a file with every default filled in and every key explained.

@@ -11,7 +11,9 @@ use super::error::StudyError;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Study {
-    pub format: Spanned<i64>,
+    /// Read by [`format`] already.
+    #[serde(rename = "format")]
+    pub _format: i64,
     pub name: Spanned<String>,
     pub seed: Option<Spanned<i64>>,
     pub model: Model,
@@ -106,6 +108,16 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Ordered<T> {
         }
         deserializer.deserialize_map(Entries(PhantomData))
     }
+}
+
+/// The format decides how the rest is read, so it is read first.
+#[derive(Debug, Deserialize)]
+pub(super) struct Versioned {
+    pub format: Option<Spanned<i64>>,
+}
+
+pub(super) fn format(text: &str) -> Result<Versioned, StudyError> {
+    toml::from_str(text).map_err(|error| StudyError::Syntax(error.to_string().trim_end().to_owned()))
 }
 
 pub(super) fn parse(text: &str) -> Result<Study, StudyError> {

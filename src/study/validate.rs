@@ -11,18 +11,22 @@ use crate::input::{Input, InputSpace, Marginal, Uniform};
 use crate::model::{CLUTCH_PARAMETERS, Parameter};
 use crate::spectrum::{Modes, Target};
 
-/// Degrees above this are numerically meaningless and would not fit the file format's indices times a safety factor.
-const HIGHEST_DEGREE: i64 = 1000;
+/// Degrees above this are of no use for functions that a design can resolve.
+const HIGHEST_DEGREE: i64 = 100;
 
 /// Design sizes above this need more memory for the regression than a workstation has.
 const LARGEST_DESIGN: i64 = 1_000_000;
 
-pub(super) fn study(raw: raw::Study, text: &str) -> Result<Study, StudyError> {
+/// Univariate polynomial values that a design may need: two gigabytes.
+const LARGEST_TABLES: usize = 250_000_000;
+
+pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     let lines = Lines { text };
-    if *raw.format.get_ref() != i64::from(STUDY_FORMAT) {
-        let place = lines.place("format", &raw.format);
-        return Err(StudyError::Format { place, found: *raw.format.get_ref(), known: STUDY_FORMAT });
+    if let Some(format) = raw::format(text)?.format.filter(|format| *format.get_ref() != i64::from(STUDY_FORMAT)) {
+        let place = lines.place("format", &format);
+        return Err(StudyError::Format { place, found: format.into_inner(), known: STUDY_FORMAT });
     }
+    let raw = raw::parse(text)?;
     let name = lines.name(raw.name)?;
     let seed = match raw.seed {
         Some(seed) => lines.integer("seed", seed, 0..=i64::MAX)? as u64,
@@ -32,14 +36,20 @@ pub(super) fn study(raw: raw::Study, text: &str) -> Result<Study, StudyError> {
     let inputs = lines.inputs(raw.inputs)?;
     let constants = lines.constants(raw.model.constants, &inputs)?;
     let dimension = inputs.dimension();
+    let fit = lines.fit(raw.fit)?;
+    let design = lines.design(raw.design, dimension)?;
+    let numbers = dimension.saturating_mul(usize::from(fit.max_degree) + 1).saturating_mul(design.maximum);
+    if numbers > LARGEST_TABLES {
+        return Err(StudyError::TooLarge { inputs: dimension, max_degree: fit.max_degree, maximum: design.maximum });
+    }
     Ok(Study {
         name,
         seed,
         model: ModelSettings::Clutch { constants },
         inputs,
         spectrum: lines.spectrum(raw.spectrum)?,
-        design: lines.design(raw.design, dimension)?,
-        fit: lines.fit(raw.fit)?,
+        design,
+        fit,
     })
 }
 

@@ -1,6 +1,7 @@
 //! Evaluation point by point: the plain reference for the fast evaluator, and the values a self-test expects.
 
 use super::{SelfTest, Surrogate};
+use crate::spectrum::spectral_abscissa;
 use nalgebra::Complex;
 
 /// Evaluators add the same terms in different orders; coefficients fall off, so rounding stays far below this.
@@ -44,7 +45,7 @@ impl Surrogate {
 
     /// max Re λ over all modes, in 1/s, from the values of all components.
     pub fn max_re(&self, components: &[f64]) -> f64 {
-        self.eigenvalues(components).iter().map(|lambda| lambda.re).fold(f64::NEG_INFINITY, f64::max)
+        spectral_abscissa(&self.eigenvalues(components))
     }
 
     /// What an evaluator must find at these physical points.

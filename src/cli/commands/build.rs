@@ -4,7 +4,6 @@ use super::super::arguments::{Build, FileFormat};
 use super::super::{Context, Ending};
 use super::{interruptible, read_study};
 use crate::artifact::{Format, check_writable, encode, save};
-use crate::build::BuildError;
 use crate::report::BuildReport;
 use crate::study::Study;
 use crate::surrogate::Surrogate;
@@ -45,7 +44,7 @@ pub(super) fn build_to_file(
     check_writable(path)?;
     let start = Instant::now();
     let surrogate = crate::build::build(study, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error == BuildError::Interrupted, source))?;
+        .map_err(|error| interruptible(error.clone(), error.is_interruption(), source))?;
     let elapsed = start.elapsed().as_secs_f64();
     let bytes = encode(&surrogate, format)?;
     save(path, &bytes)?;

@@ -1,9 +1,9 @@
 //! `pcc compare`
 
 use super::super::arguments::Compare;
-use super::super::{Context, Ending};
+use super::super::{Context, Ending, complain};
 use super::{interruptible, read_study, read_surrogate};
-use crate::reference::{ReferenceError, compare as compare_with_model};
+use crate::reference::compare as compare_with_model;
 use crate::report::CompareReport;
 use crate::study::Study;
 use crate::surrogate::Surrogate;
@@ -16,11 +16,9 @@ pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow:
         judge(context, &surrogate, &study, &options.study.display().to_string(), options.samples, options.seed)?;
     context.print(&report)?;
     match options.max_error {
-        Some(limit) if report.relative_error_percent > limit => {
-            eprintln!(
-                "pcc: the proportion is off by {} %, more than --max-error {limit}",
-                report.relative_error_percent
-            );
+        Some(limit) if report.relative_error_percent.is_none_or(|error| error > limit) => {
+            let error = report.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("by {error} %"));
+            complain(&format!("the proportion is off {error}, more than --max-error {limit}"));
             Ok(Ending::CheckFailed)
         }
         _ => Ok(Ending::Done),
@@ -37,7 +35,7 @@ pub(super) fn judge(
 ) -> anyhow::Result<CompareReport> {
     let start = Instant::now();
     let comparison = compare_with_model(surrogate, study, samples, seed, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error == ReferenceError::Interrupted, source))?;
+        .map_err(|error| interruptible(error.clone(), error.is_interruption(), source))?;
     let runs = surrogate.training.counts.direct_computations;
     Ok(CompareReport::new(&study.name, runs, &comparison, seed, start.elapsed().as_secs_f64()))
 }

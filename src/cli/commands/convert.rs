@@ -16,6 +16,13 @@ pub(in super::super) fn convert(context: &Context, options: &Convert) -> anyhow:
             options.input.display()
         );
     }
+    if !artifact.is_canonical {
+        bail!(
+            "{}: is arranged in another way than pcc writes it, so converting would change its content_id; use the \
+             program that wrote it",
+            options.input.display()
+        );
+    }
     let bytes = encode(&artifact.surrogate, Format::of_path(&options.output))?;
     save(&options.output, &bytes)?;
     context.print(&Converted { file: options.output.display().to_string(), bytes: bytes.len() as u64 })?;

@@ -17,24 +17,37 @@ pub(super) use reference::reference;
 pub(super) use run::run;
 
 use super::arguments::Arguments;
-use super::{Ending, Interrupted};
+use super::{Ending, print};
 use crate::artifact::{self, Artifact};
+use crate::progress::Interrupted;
 use crate::study::Study;
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::CommandFactory;
 use clap_complete::Shell;
 use serde::Serialize;
 use std::fmt;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
+
+/// Bytes of a study file that are read at most.
+const LARGEST_STUDY: u64 = 1 << 24;
 
 /// Prints the completion script of a shell.
 pub(super) fn completions(shell: Shell) -> anyhow::Result<Ending> {
-    clap_complete::generate(shell, &mut Arguments::command(), "pcc", &mut std::io::stdout());
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Arguments::command(), "pcc", &mut script);
+    print(&String::from_utf8_lossy(&script))?;
     Ok(Ending::Done)
 }
 
 fn read_study(path: &Path) -> anyhow::Result<Study> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    let mut text = String::new();
+    let read = File::open(path).and_then(|file| file.take(LARGEST_STUDY + 1).read_to_string(&mut text));
+    read.with_context(|| format!("{} cannot be read", path.display()))?;
+    if text.len() as u64 > LARGEST_STUDY {
+        bail!("{}: is larger than {LARGEST_STUDY} bytes, which no study is", path.display());
+    }
     Study::from_toml(&text).with_context(|| path.display().to_string())
 }
 

@@ -4,10 +4,10 @@ use super::super::arguments::Reference;
 use super::super::points::{Evaluated, PointsFile};
 use super::super::{Context, Ending};
 use super::{PointsReport, interruptible, read_study};
-use crate::reference::{ReferenceError, Runner, monte_carlo};
+use crate::design::{RunError, Runner};
+use crate::reference::monte_carlo;
 use crate::report::EvalReport;
 use crate::study::Study;
-use anyhow::Context as _;
 use std::path::Path;
 use std::time::Instant;
 
@@ -15,20 +15,26 @@ pub(in super::super) fn reference(context: &Context, options: &Reference) -> any
     let study = read_study(&options.study)?;
     let sampling = &options.sampling;
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
-        context.print(&at_points(&study, options.study.display().to_string(), points, out, sampling.extrapolate)?)?;
+        context.print(&at_points(
+            context,
+            &study,
+            options.study.display().to_string(),
+            points,
+            out,
+            sampling.extrapolate,
+        )?)?;
         return Ok(Ending::Done);
     }
     let start = Instant::now();
-    let found =
-        monte_carlo(&study, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal).map_err(|error| {
-            interruptible(error.clone(), error == ReferenceError::Interrupted, &options.study.display().to_string())
-        })?;
+    let found = monte_carlo(&study, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
+        .map_err(|error| interruptible(error.clone(), error.is_interruption(), &options.study.display().to_string()))?;
     let elapsed = start.elapsed().as_secs_f64();
     context.print(&EvalReport::of_model(&study.name, &found.outputs, &found.summary, sampling.seed, elapsed))?;
     Ok(Ending::Done)
 }
 
 fn at_points(
+    context: &Context,
     study: &Study,
     source: String,
     points: &Path,
@@ -37,9 +43,10 @@ fn at_points(
 ) -> anyhow::Result<PointsReport> {
     let mut runner = Runner::new(study)?;
     let file = PointsFile::open(points, &study.inputs, extrapolate)?;
-    let (count, stable) = file.evaluate(out, |group| {
-        let standardized: Vec<Vec<f64>> = group.iter().map(|point| study.inputs.standardized(point)).collect();
-        let runs = runner.run(&standardized).with_context(|| source.clone())?;
+    let (count, stable) = file.evaluate(out, &context.terminal, |group| {
+        let runs = runner
+            .run(group, &context.terminal)
+            .map_err(|error| interruptible(error.clone(), matches!(error, RunError::Interrupted(_)), &source))?;
         let results = runs.into_iter().map(|run| (run.eigenvalues, run.spectrum.max_re())).collect();
         Ok(Evaluated { modes: runner.modes().to_vec(), results })
     })?;

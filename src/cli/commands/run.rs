@@ -34,8 +34,9 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
         .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
 
     let (surrogate, build) = build_to_file(context, &study, &source, &path, Format::Binary)?;
-    let eval = sample(context, &surrogate, EVAL_SAMPLES, seed)?;
-    let compare = judge(context, &surrogate, &study, &source, COMPARE_SAMPLES, seed)?;
+    let finished = || format!("after the surrogate was written to {}", path.display());
+    let eval = sample(context, &surrogate, EVAL_SAMPLES, seed).with_context(finished)?;
+    let compare = judge(context, &surrogate, &study, &source, COMPARE_SAMPLES, seed).with_context(finished)?;
     context.print(&RunReport { build, eval, compare })?;
     Ok(Ending::Done)
 }
@@ -63,13 +64,13 @@ impl fmt::Display for RunReport {
         writeln!(
             f,
             "The system is stable in {:.2} % of cases, by a surrogate built from {} model runs.\n\
-             On {} points where the model was run as well, the proportion is {:.2} % off and {:.2} % of points are \
+             On {} points where the model was run as well, the proportion is {} % off and {:.2} % of points are \
              misclassified.\n\
              The surrogate is in {}; sample it again with\n\n    pcc eval {} -n 1e6",
             100.0 * eval.stable_proportion,
             build.direct_computations,
             crate::report::count(compare.samples),
-            compare.relative_error_percent,
+            compare.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("{error:.2}")),
             compare.misclassified_percent,
             build.file,
             build.file
