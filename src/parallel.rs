@@ -8,6 +8,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Numbers beyond a failed one are no longer started, so that an expensive model stops soon; those before it are, so
 /// that the error is the same for any number of threads.
 ///
+/// # Errors
+///
+/// The error of the smallest number that fails.
+///
 /// # Examples
 ///
 /// ```

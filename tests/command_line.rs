@@ -208,6 +208,9 @@ fn bad_studies_are_refused_with_place_and_remedy() {
         ("constant and input", good.replace("[inputs]", "[model.constants]\nmu = 0.3\n[inputs]")),
         ("constant out of range", good.replace("[inputs]", "[model.constants]\nplate_mass = 0.0\n[inputs]")),
         ("unknown constant", good.replace("[inputs]", "[model.constants]\nplate_colour = 1.0\n[inputs]")),
+        ("number as text", good.replace("seed = 1", "seed = \"one\"")),
+        ("input as number", good.replace(mu, "0.25")),
+        ("absurd mass", good.replace("[inputs]", "[model.constants]\nplate_mass = 1e-300\n[inputs]")),
         ("mode that does not exist", good.replace("[3, 4]", "[3, 9]")),
         ("mode zero", good.replace("[3, 4]", "[0, 4]")),
         ("mode twice", good.replace("[3, 4]", "[3, 3]")),
@@ -309,12 +312,14 @@ fn bad_points_are_refused_with_row_and_remedy() {
 fn bad_usage_is_refused() {
     let folder = workplace();
     let mut messages = String::new();
-    let cases: [&[&str]; 12] = [
+    let cases: [&[&str]; 14] = [
         &["eval", "surrogate.pcc"],
         &["eval", "surrogate.pcc", "-n", "0"],
         &["eval", "surrogate.pcc", "-n", "1.5"],
         &["eval", "surrogate.pcc", "-n", "10", "--points", "points.csv", "--out", "x.csv"],
         &["eval", "surrogate.pcc", "--points", "points.csv"],
+        &["eval", "surrogate.pcc", "-n", "10", "--out", "x.csv"],
+        &["eval", "surrogate.pcc", "-n", "-5"],
         &["eval", "surrogate.pcc", "-n", "10", "--threads", "0"],
         &["reference", "study.toml", "-n", "0"],
         &["compare", "surrogate.pcc", "--study", "study.toml", "-n", "0"],
@@ -327,6 +332,63 @@ fn bad_usage_is_refused() {
         messages.push_str(&format!("── pcc {}\n{}", arguments.join(" "), refusal(folder.path(), arguments)));
     }
     assert_output!("bad_usage", messages);
+}
+
+/// No mistyped output destroys a study, a surrogate or data.
+#[test]
+fn outputs_never_replace_inputs_or_other_files() {
+    let folder = workplace();
+    let points = ["--points", "points.csv", "--out"];
+    let cases: [Vec<&str>; 7] = [
+        vec!["build", "study.toml", "-o", "study.toml"],
+        vec!["build", "study.toml", "-o", "points.csv"],
+        vec!["convert", "surrogate.pcc", "study.toml"],
+        vec!["convert", "surrogate.pcc", "./surrogate.pcc"],
+        [&["eval", "surrogate.pcc"], &points[..], &["surrogate.pcc"]].concat(),
+        [&["eval", "surrogate.pcc"], &points[..], &["points.csv"]].concat(),
+        [&["reference", "study.toml"], &points[..], &["study.toml"]].concat(),
+    ];
+    let content = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let before = ["study.toml", "surrogate.pcc", "points.csv"].map(content);
+    for arguments in cases {
+        let message = refusal(folder.path(), &arguments);
+        assert!(message.contains("name another output"), "{arguments:?}: {message}");
+    }
+    assert_eq!(["study.toml", "surrogate.pcc", "points.csv"].map(content), before);
+    output(folder.path(), &["build", "study.toml", "-o", "surrogate.pcc"]); // a surrogate may be replaced
+}
+
+#[test]
+fn swapped_files_are_named() {
+    let folder = workplace();
+    output(folder.path(), &["convert", "surrogate.pcc", "surrogate.json"]);
+    for name in ["surrogate.pcc", "surrogate.json"] {
+        let message = refusal(folder.path(), &["build", name]);
+        assert!(message.contains("is a surrogate; give the study"), "{message}");
+    }
+    let message = refusal(folder.path(), &["eval", "study.toml", "-n", "10"]);
+    assert!(message.contains("study.toml: is not a surrogate"), "{message}");
+}
+
+/// Whoever samples a surrogate that predicts worse than a constant is told so.
+#[test]
+fn poor_fits_are_flagged_wherever_the_surrogate_is_used() {
+    let folder = workplace();
+    let poor = format!(
+        "{}\n[design]\ninitial = 12\nmaximum = 12\n[fit]\nepsilon_forward = 0.0\n",
+        text("surrogates/clutch-r8-eigenvalues.toml").replace("modes = [3, 4]", "modes = [1, 3]").replace("r8", "poor")
+    );
+    fs::write(folder.path().join("poor.toml"), poor).unwrap();
+    for arguments in [
+        &["build", "poor.toml", "-o", "poor.pcc"][..],
+        &["eval", "poor.pcc", "-n", "100"],
+        &["inspect", "poor.pcc"],
+        &["run", "poor.toml"],
+    ] {
+        let text = output(folder.path(), arguments);
+        assert!(text.contains("warning: re_3 is "), "{arguments:?}: {text}");
+    }
+    assert!(output(folder.path(), &["eval", "poor.pcc", "-n", "100"]).contains("judged by modes 1, 3 alone"));
 }
 
 #[test]

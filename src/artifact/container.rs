@@ -7,7 +7,7 @@ use super::version::{Compatibility, MAJOR, MINOR, compatibility};
 use serde::de::DeserializeOwned;
 
 /// As in PNG, the first byte exposes transfers that clear the eighth bit, and the line ends those that translate them.
-const MAGIC: [u8; 8] = [0x89, b'P', b'C', b'C', 0x0D, 0x0A, 0x1A, 0x0A];
+pub(super) const MAGIC: [u8; 8] = [0x89, b'P', b'C', b'C', 0x0D, 0x0A, 0x1A, 0x0A];
 
 /// Section bodies by bincode 2, fixed-width integers, little-endian.
 const CODEC: u32 = 1;

@@ -106,8 +106,7 @@ pub fn decode(bytes: &[u8]) -> Result<Artifact, ReadError> {
     if bytes.len() as u64 > LARGEST_FILE {
         return Err(ReadError::TooLarge { length: bytes.len() as u64, limit: LARGEST_FILE });
     }
-    let starts_like_json = bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{');
-    let (document, format, version, unknown_sections) = if starts_like_json {
+    let (document, format, version, unknown_sections) = if starts_like_json(bytes) {
         let (document, version) = json::decode(bytes)?;
         (document, Format::Json, version, Vec::new())
     } else {
@@ -121,6 +120,15 @@ pub fn decode(bytes: &[u8]) -> Result<Artifact, ReadError> {
     let surrogate = from_v1::surrogate(document)?;
     let is_canonical = to_v1::document(&surrogate)?.meta.content_id == content_id;
     Ok(Artifact { surrogate, format, version, content_id, is_canonical, unknown_sections })
+}
+
+fn starts_like_json(bytes: &[u8]) -> bool {
+    bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{')
+}
+
+/// Whether a file that starts with `bytes` may be a surrogate of either form.
+pub fn looks_like_a_surrogate(bytes: &[u8]) -> bool {
+    bytes.starts_with(&container::MAGIC) || starts_like_json(bytes)
 }
 
 /// Reads a surrogate file.

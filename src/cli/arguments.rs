@@ -127,7 +127,7 @@ pub(super) enum FileFormat {
 #[derive(Debug, Args)]
 pub(super) struct Sampling {
     /// Number of samples, as in 1000000 or 1e6
-    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count)]
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, allow_negative_numbers = true)]
     pub samples: Option<u64>,
 
     /// Seed of the samples
@@ -139,7 +139,7 @@ pub(super) struct Sampling {
     pub points: Option<PathBuf>,
 
     /// CSV file for the results at these points: the point, re_k and im_k of each mode, max_re, stable
-    #[arg(long, value_name = "OUT.csv", requires = "points")]
+    #[arg(long, value_name = "OUT.csv", requires = "points", conflicts_with = "samples")]
     pub out: Option<PathBuf>,
 
     /// Accept points outside the inputs' domain, where a surrogate knows nothing
@@ -175,7 +175,7 @@ pub(super) struct Compare {
     pub study: PathBuf,
 
     /// Number of points, as in 10000 or 1e4
-    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count)]
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, allow_negative_numbers = true)]
     pub samples: u64,
 
     /// Seed of the points
@@ -183,7 +183,7 @@ pub(super) struct Compare {
     pub seed: u64,
 
     /// Exit with code 1 if the relative error of the stability proportion is larger
-    #[arg(long, value_name = "PERCENT", value_parser = percentage)]
+    #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
     pub max_error: Option<f64>,
 }
 
@@ -223,7 +223,7 @@ fn sample_count(text: &str) -> Result<u64, String> {
     match count {
         Some(0) => Err("use at least 1".to_owned()),
         Some(count) => Ok(count),
-        None => Err("use a whole number from 1, like 1000000 or 1e6".to_owned()),
+        None => Err("use a whole number from 1 to 9e15, like 1000000 or 1e6".to_owned()),
     }
 }
 

@@ -17,7 +17,7 @@ const GROUP: usize = 4096;
 pub(super) enum PointsError {
     #[error("cannot be read: {0}")]
     Csv(String),
-    #[error("there is no column {name}; the file has {found}; add a column with the values of {name}")]
+    #[error("there is no column {name}; the header is \"{found}\"; add the column, and separate columns by commas")]
     MissingColumn { name: String, found: String },
     #[error("column {name} is there twice; remove one")]
     RepeatedColumn { name: String },

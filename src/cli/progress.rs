@@ -39,9 +39,10 @@ impl Terminal {
 
 impl Observer for Terminal {
     fn begin(&self, stage: &str, total: u64) {
-        self.bar.reset();
-        self.bar.set_length(total);
+        // Message and length first: `reset` is what draws.
+        self.bar.update(|state| state.set_len(total));
         self.bar.set_message(stage.to_owned());
+        self.bar.reset();
     }
 
     fn advance(&self, steps: u64) {

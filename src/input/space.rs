@@ -26,7 +26,7 @@ pub enum InputError {
         name: String,
     },
     /// A coordinate lies outside its distribution's support.
-    #[error("{name} = {value} lies outside [{lower}, {upper}]")]
+    #[error("{name} = {value:?} lies outside [{lower:?}, {upper:?}]")]
     Outside {
         /// Name of the input.
         name: String,
@@ -113,7 +113,7 @@ impl InputSpace {
 
     /// A point as text, `mu = 0.25, k_p = 16000000`: for messages.
     pub fn describe(&self, physical: &[f64]) -> String {
-        let named: Vec<_> = self.names().zip(physical).map(|(name, value)| format!("{name} = {value}")).collect();
+        let named: Vec<_> = self.names().zip(physical).map(|(name, value)| format!("{name} = {value:?}")).collect();
         named.join(", ")
     }
 }

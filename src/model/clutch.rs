@@ -67,11 +67,13 @@ impl Clutch {
     ///
     /// # Errors
     ///
-    /// [`ModelError::UnknownParameter`].
+    /// [`ModelError::UnknownParameter`] and [`ModelError::OutOfRange`].
     pub fn new(constants: &[(&str, f64)], uncertain: &[&str]) -> Result<Self, ModelError> {
         let mut values = CLUTCH_PARAMETERS.map(|parameter| parameter.nominal);
         for &(name, value) in constants {
-            values[position(name)?] = value;
+            let at = position(name)?;
+            check_range(at, value)?;
+            values[at] = value;
         }
         let uncertain = uncertain.iter().map(|name| position(name)).collect::<Result<_, _>>()?;
         Ok(Self { values, uncertain })
@@ -94,7 +96,7 @@ impl Clutch {
         }
     }
 
-    /// The 12 × 12 state matrix at `point`, in 1/s and 1/s².
+    /// The 12 × 12 state matrix at `point`, in 1/s and 1/s². Parameters beyond the end of a short `point` are nominal.
     pub fn state_matrix(&self, point: &[f64]) -> DMatrix<f64> {
         let Matrices { mass_diagonal, damping, stiffness } = self.matrices(point);
         state_matrix(&mass_diagonal, &damping, &stiffness)
@@ -104,13 +106,15 @@ impl Clutch {
 impl Model for Clutch {
     fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
         for (&at, &value) in self.uncertain.iter().zip(point) {
-            let Parameter { name, range, .. } = CLUTCH_PARAMETERS[at];
-            if !range.contains(value) {
-                return Err(ModelError::OutOfRange { name, value, range: range.describe() });
-            }
+            check_range(at, value)?;
         }
         Ok(eigenvalues(self.state_matrix(point))?)
     }
+}
+
+fn check_range(at: usize, value: f64) -> Result<(), ModelError> {
+    let Parameter { name, range, .. } = CLUTCH_PARAMETERS[at];
+    if range.contains(value) { Ok(()) } else { Err(ModelError::OutOfRange { name, value, range: range.describe() }) }
 }
 
 fn position(name: &str) -> Result<usize, ModelError> {

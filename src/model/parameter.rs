@@ -10,23 +10,26 @@ pub enum Range {
 }
 
 impl Range {
-    /// Whether `value` is finite and in range.
+    /// Whether `value` is in range. Magnitudes beyond 10^±30 of any unit are mistakes that would overflow.
     pub fn contains(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Positive => value > 0.0,
-                Self::NonNegative => value >= 0.0,
-            }
+        let smallest = match self {
+            Self::Positive => 1.0 / LARGEST,
+            Self::NonNegative => 0.0,
+        };
+        (smallest..=LARGEST).contains(&value)
     }
 
     /// The range in words, to follow "must be".
     pub fn describe(self) -> &'static str {
         match self {
-            Self::Positive => "greater than zero",
-            Self::NonNegative => "zero or greater",
+            Self::Positive => "greater than zero (1e-30 to 1e30)",
+            Self::NonNegative => "zero or greater (up to 1e30)",
         }
     }
 }
+
+/// No quantity of a machine is larger in SI units.
+const LARGEST: f64 = 1e30;
 
 /// One parameter of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -26,7 +26,7 @@ pub enum ReferenceError {
     Run(#[from] RunError),
     /// The surrogate answers another question than the study asks.
     #[error(
-        "the surrogate was built for another problem (its hash is {surrogate}, the study's is {study}): model, \
+        "the surrogate was built for another problem (hash {surrogate:.12}…, the study's is {study:.12}…): model, \
          constants, inputs or spectrum differ; give the study it was built from"
     )]
     OtherProblem {

@@ -5,8 +5,8 @@ use crate::surrogate::{StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
-/// S² below which an expansion says hardly more than the mean.
-const POOR: f64 = 0.5;
+/// S² below which a component is called poorly fitted.
+const POOR: f64 = 0.9;
 
 /// The result of a build.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,6 +25,8 @@ pub struct BuildReport {
     pub levels: Vec<u64>,
     /// Fit of every component.
     pub components: Vec<FitReport>,
+    /// What to know before trusting the surrogate.
+    pub warnings: Vec<String>,
     /// Wall-clock time.
     pub elapsed_seconds: f64,
 }
@@ -66,6 +68,27 @@ impl FitReport {
         surrogate.components().into_iter().map(report).collect()
     }
 
+    /// What a user must know before trusting the surrogate: components that are fitted poorly or not judged at all.
+    pub fn warnings(fits: &[Self]) -> Vec<String> {
+        let warning = |fit: &Self| {
+            let name = &fit.name;
+            match fit.s2 {
+                Some(s2) if s2 < 0.0 => Some(format!(
+                    "{name} is predicted worse than by its mean (S² {s2:.2}); do not trust what depends on it"
+                )),
+                Some(s2) if s2 < POOR => Some(format!("{name} is poorly fitted (S² {s2:.2})")),
+                None if fit.r2.is_some() => Some(format!("{name} could not be judged by leaving out points")),
+                _ => None,
+            }
+        };
+        let mut warnings: Vec<String> = fits.iter().filter_map(warning).collect();
+        if fits.iter().any(|fit| fit.stop == StopReason::DesignExhausted.describe()) {
+            warnings
+                .push("the design reached design.maximum before the fit was accurate; raise it for more".to_owned());
+        }
+        warnings
+    }
+
     /// A table of fits.
     pub fn table(fits: &[Self]) -> Table {
         let right = Align::Right;
@@ -104,6 +127,7 @@ impl BuildReport {
             seed: surrogate.training.seed,
             direct_computations: surrogate.training.counts.direct_computations,
             levels: surrogate.training.levels.clone(),
+            warnings: FitReport::warnings(&FitReport::of(surrogate)),
             components: FitReport::of(surrogate),
             elapsed_seconds,
         }
@@ -123,13 +147,7 @@ impl fmt::Display for BuildReport {
             self.seed
         )?;
         writeln!(f, "{}", FitReport::table(&self.components))?;
-        if self.components.iter().any(|fit| fit.stop == StopReason::DesignExhausted.describe()) {
-            writeln!(f, "The design reached design.maximum before the fit was accurate; raise it for more.")?;
-        }
-        for fit in self.components.iter().filter(|fit| fit.s2.is_some_and(|s2| s2 < POOR)) {
-            let name = &fit.name;
-            writeln!(f, "{name} is poorly fitted: it predicts points left out hardly better than its mean does.")?;
-        }
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning: {warning}"))?;
         writeln!(f, "written to {} ({} bytes)", self.file, count(self.bytes))
     }
 }

@@ -155,6 +155,6 @@ impl fmt::Display for CompareReport {
                 percentage(component.variance_error_percent),
             ]);
         }
-        write!(f, "{table}")
+        writeln!(f, "{table}re in 1/s, im in rad/s; variances in their squares")
     }
 }

@@ -1,5 +1,6 @@
 //! The answer of `eval` and `reference`: stability and what engineers read of each mode.
 
+use super::build::FitReport;
 use super::table::{Align, Table, count, significant};
 use crate::spectrum::{ModeSummary, Output, Summary};
 use crate::statistics::{Interval, Moments};
@@ -31,7 +32,9 @@ pub struct EvalReport {
     pub modes: Vec<ModeReport>,
     /// Every component.
     pub components: Vec<ComponentReport>,
-    /// Quantiles of the leave-one-out error of max Re λ, in 1/s, from the file; empty for a model.
+    /// What to know before trusting a surrogate.
+    pub warnings: Vec<String>,
+    /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file; empty for a model.
     pub max_re_residuals: Vec<QuantileReport>,
     /// Wall-clock time.
     pub elapsed_seconds: f64,
@@ -120,6 +123,7 @@ impl EvalReport {
         for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
             component.analysis = Some(analysis);
         }
+        report.warnings = FitReport::warnings(&FitReport::of(surrogate));
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
         report
@@ -161,6 +165,7 @@ impl EvalReport {
                     analysis: None,
                 })
                 .collect(),
+            warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
         }
@@ -231,7 +236,12 @@ impl fmt::Display for EvalReport {
         )?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         let Interval { lower, upper, level } = self.interval;
-        writeln!(f, "  stable                 {}", percent(self.stable_proportion))?;
+        let modes: Vec<String> = self.modes.iter().map(|mode| mode.mode.to_string()).collect();
+        let judged_by = match self.source {
+            "model" => "all modes".to_owned(),
+            _ => format!("modes {} alone", modes.join(", ")),
+        };
+        writeln!(f, "  stable                 {}   judged by {judged_by}", percent(self.stable_proportion))?;
         writeln!(
             f,
             "  {:.0} % interval          {} to {}   from sampling alone",
@@ -242,12 +252,19 @@ impl fmt::Display for EvalReport {
         writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
         if let Some((low, high)) = self.central_residuals() {
             let [low, high] = [low, high].map(|value| significant(value, 3));
-            writeln!(f, "  max Re λ is off by     {low} to {high} 1/s at 95 % of the points left out of the fit")?;
+            writeln!(
+                f,
+                "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out"
+            )?;
         }
         writeln!(f, "\n{}", self.mode_table())?;
         write!(f, "{}", self.component_table())?;
+        writeln!(f, "re in 1/s, im in rad/s")?;
         let sobol = self.sobol_table();
-        if sobol.is_empty() { Ok(()) } else { write!(f, "\n{sobol}") }
+        if !sobol.is_empty() {
+            write!(f, "\n{sobol}")?;
+        }
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
     }
 }
 
@@ -295,7 +312,7 @@ impl EvalReport {
         ];
         let exact = self.components.iter().any(|component| component.analysis.is_some());
         if exact {
-            columns.extend([("mean, exact", right), ("std. dev., exact", right)]);
+            columns.extend([("mean by coefficients", right), ("std. dev.", right)]);
         }
         let mut table = Table::new(&columns);
         for component in &self.components {

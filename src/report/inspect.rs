@@ -53,6 +53,8 @@ pub struct InspectReport {
     pub inputs: Vec<InputReport>,
     /// Fit of every component.
     pub components: Vec<FitReport>,
+    /// What to know before trusting the surrogate.
+    pub warnings: Vec<String>,
     /// Terms after merging all components, and operations per evaluation.
     pub plan: PlanReport,
     /// Largest relative difference between the self-test and this evaluator.
@@ -130,6 +132,7 @@ impl InspectReport {
             seed: surrogate.training.seed,
             modes: surrogate.modes(),
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
+            warnings: FitReport::warnings(&FitReport::of(surrogate)),
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
             self_test_difference: self_test_difference(surrogate),
@@ -227,6 +230,7 @@ impl fmt::Display for InspectReport {
             let (lower, upper) = (significant(input.lower, 6), significant(input.upper, 6));
             inputs.row([&input.name, input.distribution, &lower, &upper, input.family]);
         }
-        write!(f, "\n{inputs}\n{}", FitReport::table(&self.components))
+        write!(f, "\n{inputs}\n{}", FitReport::table(&self.components))?;
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
     }
 }

@@ -41,7 +41,7 @@ pub const STUDY_FORMAT: u32 = 1;
 pub struct Study {
     /// Name of the study and of the files built from it.
     pub name: String,
-    /// Seed of all random numbers.
+    /// Seed of the design.
     pub seed: u64,
     /// The model and its constants.
     pub model: ModelSettings,

@@ -14,7 +14,7 @@ pub(super) fn study(study: &Study) -> String {
     let mut file = Printer::default();
     file.line("format", STUDY_FORMAT, "of this file");
     file.line("name", format!("{:?}", study.name), "also names the files built from it");
-    file.line("seed", study.seed, "of all random numbers");
+    file.line("seed", study.seed, "of the design");
     model(&mut file, &study.model);
     inputs(&mut file, study);
 

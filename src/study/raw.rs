@@ -117,9 +117,30 @@ pub(super) struct Versioned {
 }
 
 pub(super) fn format(text: &str) -> Result<Versioned, StudyError> {
-    toml::from_str(text).map_err(|error| StudyError::Syntax(error.to_string().trim_end().to_owned()))
+    toml::from_str(text).map_err(syntax)
 }
 
 pub(super) fn parse(text: &str) -> Result<Study, StudyError> {
-    toml::from_str(text).map_err(|error| StudyError::Syntax(error.to_string().trim_end().to_owned()))
+    toml::from_str(text).map_err(syntax)
+}
+
+/// The parser's message with its excerpt of the file, in words of the file instead of words of the program.
+fn syntax(error: toml::de::Error) -> StudyError {
+    const WORDS: [(&str, &str); 9] = [
+        ("missing field", "missing key"),
+        ("unknown field", "unknown key"),
+        ("expected i64", "expected a whole number"),
+        ("expected f64", "expected a number"),
+        ("expected struct Input", "expected a table like { distribution = \"uniform\", lower = 0.0, upper = 1.0 }"),
+        ("expected struct", "expected a table"),
+        ("expected a string", "expected a text in quotes"),
+        ("floating point", "number"),
+        (" as i128", ""),
+    ];
+    let mut message = WORDS.iter().fold(error.to_string(), |text, (theirs, ours)| text.replace(theirs, ours));
+    message.truncate(message.trim_end().len());
+    if message.contains("missing key") {
+        message.push_str("; add it");
+    }
+    StudyError::Syntax(message)
 }

@@ -1,6 +1,6 @@
 //! From the file as written to a study in which everything holds.
 
-use std::fmt::Display;
+use std::fmt::Debug;
 use std::ops::RangeInclusive;
 use toml::Spanned;
 
@@ -64,10 +64,10 @@ impl Lines<'_> {
         Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
     }
 
-    fn out_of_range<T: Display>(&self, key: &str, value: &Spanned<T>, expected: impl Into<String>) -> StudyError {
+    fn out_of_range<T: Debug>(&self, key: &str, value: &Spanned<T>, expected: impl Into<String>) -> StudyError {
         StudyError::OutOfRange {
             place: self.place(key, value),
-            found: value.get_ref().to_string(),
+            found: format!("{:?}", value.get_ref()),
             expected: expected.into(),
         }
     }
@@ -148,9 +148,9 @@ impl Lines<'_> {
         };
         let uniform =
             Uniform::new(lower, upper).map_err(|cause| StudyError::Distribution { place: place.clone(), cause })?;
-        if !parameter.range.contains(lower) {
+        if !(parameter.range.contains(lower) && parameter.range.contains(upper)) {
             let expected = format!("{} over the whole interval", parameter.range.describe());
-            return Err(StudyError::OutOfRange { place, found: format!("from {lower} to {upper}"), expected });
+            return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });
         }
         Ok(Marginal::Uniform(uniform))
     }

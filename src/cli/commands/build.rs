@@ -2,7 +2,7 @@
 
 use super::super::arguments::{Build, FileFormat};
 use super::super::{Context, Ending};
-use super::{interruptible, read_study};
+use super::{interruptible, keep_other_files, read_study};
 use crate::artifact::{Format, check_writable, encode, save};
 use crate::report::BuildReport;
 use crate::study::Study;
@@ -28,6 +28,7 @@ pub(in super::super) fn build(context: &Context, options: &Build) -> anyhow::Res
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.{}", study.name, asked.unwrap_or(Format::Binary).extension())));
     let format = asked.unwrap_or_else(|| Format::of_path(&path));
+    keep_other_files(&path)?;
     let (_, report) = build_to_file(context, &study, &options.study.display().to_string(), &path, format)?;
     context.print(&report)?;
     Ok(Ending::Done)

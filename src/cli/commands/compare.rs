@@ -17,7 +17,9 @@ pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow:
     context.print(&report)?;
     match options.max_error {
         Some(limit) if report.relative_error_percent.is_none_or(|error| error > limit) => {
-            let error = report.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("by {error} %"));
+            let error = report
+                .relative_error_percent
+                .map_or("infinitely".to_owned(), |error| format!("by {} %", crate::report::significant(error, 4)));
             complain(&format!("the proportion is off {error}, more than --max-error {limit}"));
             Ok(Ending::CheckFailed)
         }

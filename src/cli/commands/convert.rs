@@ -2,7 +2,7 @@
 
 use super::super::arguments::Convert;
 use super::super::{Context, Ending};
-use super::read_surrogate;
+use super::{keep_inputs, keep_other_files, read_surrogate};
 use crate::artifact::{Format, encode, save};
 use anyhow::bail;
 use serde::Serialize;
@@ -23,6 +23,8 @@ pub(in super::super) fn convert(context: &Context, options: &Convert) -> anyhow:
             options.input.display()
         );
     }
+    keep_inputs(&options.output, &[&options.input])?;
+    keep_other_files(&options.output)?;
     let bytes = encode(&artifact.surrogate, Format::of_path(&options.output))?;
     save(&options.output, &bytes)?;
     context.print(&Converted { file: options.output.display().to_string(), bytes: bytes.len() as u64 })?;

@@ -3,7 +3,7 @@
 use super::super::arguments::Eval;
 use super::super::points::{Evaluated, PointsFile};
 use super::super::{Context, Ending};
-use super::{PointsReport, interruptible, read_surrogate};
+use super::{PointsReport, interruptible, keep_inputs, read_surrogate};
 use crate::eval::{Plan, evaluate_points, monte_carlo};
 use crate::report::EvalReport;
 use crate::surrogate::Surrogate;
@@ -14,6 +14,7 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let sampling = &options.sampling;
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
+        keep_inputs(out, &[points, &options.surrogate])?;
         context.print(&at_points(context, &surrogate, points, out, sampling.extrapolate)?)?;
     } else {
         context.print(&sample(context, &surrogate, sampling.samples.unwrap_or(0), sampling.seed)?)?;

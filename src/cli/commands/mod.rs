@@ -41,13 +41,40 @@ pub(super) fn completions(shell: Shell) -> anyhow::Result<Ending> {
     Ok(Ending::Done)
 }
 
+/// Refuses an output that is one of the command's own inputs, which the result would destroy.
+fn keep_inputs(output: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
+    let Ok(output_file) = output.canonicalize() else { return Ok(()) };
+    for input in inputs {
+        if input.canonicalize().is_ok_and(|input_file| input_file == output_file) {
+            bail!("{}: would replace the file it is made from; name another output", output.display());
+        }
+    }
+    Ok(())
+}
+
+/// Refuses to replace a file that is no surrogate by one: a study or data named by mistake.
+fn keep_other_files(output: &Path) -> anyhow::Result<()> {
+    let mut start = Vec::new();
+    let read = File::open(output).and_then(|file| file.take(64).read_to_end(&mut start));
+    if read.is_ok() && !start.is_empty() && !artifact::looks_like_a_surrogate(&start) {
+        bail!("{}: exists and is not a surrogate; name another output, or remove it first", output.display());
+    }
+    Ok(())
+}
+
 fn read_study(path: &Path) -> anyhow::Result<Study> {
-    let mut text = String::new();
-    let read = File::open(path).and_then(|file| file.take(LARGEST_STUDY + 1).read_to_string(&mut text));
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LARGEST_STUDY + 1).read_to_end(&mut bytes));
     read.with_context(|| format!("{} cannot be read", path.display()))?;
-    if text.len() as u64 > LARGEST_STUDY {
+    if artifact::looks_like_a_surrogate(&bytes) {
+        bail!("{}: is a surrogate; give the study, a .toml file", path.display());
+    }
+    if bytes.len() as u64 > LARGEST_STUDY {
         bail!("{}: is larger than {LARGEST_STUDY} bytes, which no study is", path.display());
     }
+    let Ok(text) = String::from_utf8(bytes) else {
+        bail!("{}: is not text; give a study, a .toml file", path.display());
+    };
     Study::from_toml(&text).with_context(|| path.display().to_string())
 }
 

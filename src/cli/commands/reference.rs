@@ -3,7 +3,7 @@
 use super::super::arguments::Reference;
 use super::super::points::{Evaluated, PointsFile};
 use super::super::{Context, Ending};
-use super::{PointsReport, interruptible, read_study};
+use super::{PointsReport, interruptible, keep_inputs, read_study};
 use crate::design::{RunError, Runner};
 use crate::reference::monte_carlo;
 use crate::report::EvalReport;
@@ -15,6 +15,7 @@ pub(in super::super) fn reference(context: &Context, options: &Reference) -> any
     let study = read_study(&options.study)?;
     let sampling = &options.sampling;
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
+        keep_inputs(out, &[points, &options.study])?;
         context.print(&at_points(
             context,
             &study,

@@ -5,7 +5,7 @@ use super::super::{Context, Ending};
 use super::build::build_to_file;
 use super::compare::judge;
 use super::eval::sample;
-use super::read_study;
+use super::{keep_other_files, read_study};
 use crate::artifact::Format;
 use crate::report::{BuildReport, CompareReport, EvalReport};
 use crate::study::Study;
@@ -33,12 +33,19 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
     std::fs::create_dir_all(&options.output)
         .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
 
+    keep_other_files(&path)?;
     let (surrogate, build) = build_to_file(context, &study, &source, &path, Format::Binary)?;
     let finished = || format!("after the surrogate was written to {}", path.display());
     let eval = sample(context, &surrogate, EVAL_SAMPLES, seed).with_context(finished)?;
     let compare = judge(context, &surrogate, &study, &source, COMPARE_SAMPLES, seed).with_context(finished)?;
     context.print(&RunReport { build, eval, compare })?;
     Ok(Ending::Done)
+}
+
+/// A file name as a shell takes it.
+fn quoted(name: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
+    if name.chars().all(is_plain) { name.to_owned() } else { format!("'{}'", name.replace('\'', r"'\''")) }
 }
 
 /// Everything a run found.
@@ -73,7 +80,8 @@ impl fmt::Display for RunReport {
             compare.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("{error:.2}")),
             compare.misclassified_percent,
             build.file,
-            build.file
-        )
+            quoted(&build.file)
+        )?;
+        self.eval.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
     }
 }
