@@ -1,4 +1,4 @@
-//! The README's session and study are real: run them and compare.
+//! The README's example and study are real: run them and compare.
 
 mod support;
 
@@ -28,14 +28,14 @@ fn without_times(text: &str) -> String {
 }
 
 #[test]
-fn the_session_prints_what_it_prints() {
+fn the_worked_example_prints_what_it_prints() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("surrogates")).unwrap();
     let study = "surrogates/clutch-r3-eigenvalues.toml";
     fs::copy(repository(study), folder.path().join(study)).unwrap();
-    let session: Vec<String> = blocks("console").into_iter().filter(|block| block.starts_with("$ pcc ")).collect();
-    assert_eq!(session.len(), 3, "build, eval, compare");
-    for block in session {
+    let example: Vec<String> = blocks("console").into_iter().filter(|block| block.starts_with("$ pcc ")).collect();
+    assert_eq!(example.len(), 3, "build, eval, compare");
+    for block in example {
         let (command, expected) = block.split_once('\n').unwrap();
         let output = Command::cargo_bin("pcc")
             .unwrap()
