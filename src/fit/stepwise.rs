@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn candidates_of_a_shell_are_tested_against_the_set_before_it() {
-        // x² alone is uncorrelated with x³ on no finite design, so both join if each alone gains, whatever their order.
+        // On a finite design terms of one shell correlate; each is still judged alone, so their order plays no part.
         let problem = problem(40, 1.0);
         let values = problem.values(&[([0, 0], 1.0), ([3, 0], 1.0), ([2, 1], 1.0)]);
         let one_degree = Stepwise { max_degree: 3, epsilon_forward: 1e-3, epsilon_backward: 0.0, ..settings(1.0, 1.0) };
@@ -246,21 +246,17 @@ mod tests {
         assert_eq!(basis.indices(), [MultiIndex::constant(2), MultiIndex::new(vec![2, 0])]);
     }
 
+    /// Degree 2 in two inputs has six terms, four of which make up the values. On few points the other two correlate with
+    /// the residual and join as well: fewer than 8 points never suffice, 12 always do.
     #[test]
-    fn exactly_two_points_per_term_are_enough() {
+    fn two_points_per_term_are_required_and_suffice() {
         let terms = [([0, 0], 1.0), ([1, 0], 1.0), ([0, 1], 1.0), ([1, 1], 1.0)];
-        let only_these = |points: usize| {
-            let problem = problem(points, 1.0);
-            // ε small enough to keep all four, large enough to keep nothing else.
-            let settings =
-                Stepwise { max_degree: 2, epsilon_forward: 1e-9, epsilon_backward: 1e-9, ..settings(1.0, 1.0) };
-            let values = problem.values(&terms);
-            (problem.fit(&values, &settings), problem)
-        };
+        let quadratic = Stepwise { max_degree: 2, epsilon_forward: 1e-9, epsilon_backward: 1e-9, ..settings(1.0, 1.0) };
         for points in 4..30 {
-            let (outcome, _) = only_these(points);
-            if let Outcome::Fitted(found) = outcome {
-                assert!(points >= 2 * found.indices.len());
+            let problem = problem(points, 1.0);
+            match problem.fit(&problem.values(&terms), &quadratic) {
+                Outcome::Fitted(found) => assert!(points >= 2 * found.indices.len() && found.indices.len() >= 4),
+                Outcome::TooFewSamples { .. } => assert!(points < 12, "{points} points suffice"),
             }
         }
     }
