@@ -65,7 +65,7 @@ fn leave_one_out_errors_equal_numpy() {
     let (tables, values) = tables(&reference);
     let expected = &reference["leave_one_out"];
     let basis = fitted(&tables, &values, &indices(&expected["multi_indices"]));
-    let errors = basis.errors();
+    let errors = basis.errors().unwrap();
     let relative = |name: &str| expected[name].as_f64().unwrap();
     assert_close(&[1.0 - errors.s2.unwrap()], &[relative("relative_error")]);
     assert_close(&[1.0 - errors.corrected_s2.unwrap()], &[relative("corrected_relative_error")]);

@@ -3,6 +3,7 @@
 pub mod stepwise;
 
 use crate::index_set::{IndexSet, MultiIndex};
+use crate::progress::Interrupted;
 use crate::regression::{ActiveBasis, ErrorMeasures};
 
 /// Why a fit ended.
@@ -36,18 +37,18 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    fn new(basis: &ActiveBasis<'_>, degree: u16, stop: Stop) -> Self {
+    fn new(basis: &ActiveBasis<'_>, degree: u16, stop: Stop) -> Result<Self, Interrupted> {
         let mut terms: Vec<(MultiIndex, f64)> = basis.indices().iter().cloned().zip(basis.coefficients()).collect();
         terms.sort_by(|a, b| a.0.cmp(&b.0));
         let (indices, coefficients) = terms.into_iter().unzip();
-        Self {
+        Ok(Self {
             indices: IndexSet::from_unsorted(indices),
             coefficients,
-            errors: Some(basis.errors()),
+            errors: Some(basis.errors()?),
             leave_one_out_residuals: basis.leave_one_out_residuals(),
             degree,
             stop,
-        }
+        })
     }
 
     /// The mean of values that do not vary.

@@ -95,11 +95,11 @@ pub fn fit(
         if !is_determined || samples < SAMPLES_PER_TERM * basis.indices().len() {
             return Ok(Outcome::TooFewSamples { indices: before, degree: degree - 1 }); // step 4
         }
-        if basis.errors().s2.is_some_and(|s2| s2 >= settings.s2_target) {
-            return Ok(Outcome::Fitted(Fitted::new(&basis, degree, Stop::Accurate))); // step 5
+        if basis.s2().is_some_and(|s2| s2 >= settings.s2_target) {
+            return Ok(Outcome::Fitted(Fitted::new(&basis, degree, Stop::Accurate)?)); // step 5
         }
     }
-    Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)))
+    Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)?))
 }
 
 /// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for.
@@ -120,7 +120,7 @@ pub fn settle(
     };
     let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?;
     basis.extend(indices[1..].to_vec())?;
-    Ok(Fitted::new(&basis, degree, Stop::DesignExhausted))
+    Fitted::new(&basis, degree, Stop::DesignExhausted)
 }
 
 /// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as points, adds
@@ -138,7 +138,7 @@ fn forward_step(basis: &mut ActiveBasis<'_>, candidates: &[MultiIndex], epsilon:
 
 /// Drops the terms of lower degree, never {0}, that each alone lower R² by less than `epsilon`.
 fn backward_step(basis: &mut ActiveBasis<'_>, of_this_degree: &[MultiIndex], epsilon: f64) -> Result<(), Interrupted> {
-    let losses = basis.losses();
+    let losses = basis.losses()?;
     let protected: HashSet<&MultiIndex> = of_this_degree.iter().collect();
     basis.retain(|k, alpha| alpha.is_constant() || protected.contains(alpha) || losses[k] >= epsilon)
 }
