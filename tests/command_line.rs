@@ -339,7 +339,9 @@ fn bad_usage_is_refused() {
 fn outputs_never_replace_inputs_or_other_files() {
     let folder = workplace();
     let points = ["--points", "points.csv", "--out"];
-    let cases: [Vec<&str>; 7] = [
+    fs::write(folder.path().join("data.json"), "{\"runs\": [1, 2, 3]}").unwrap();
+    let cases: [Vec<&str>; 8] = [
+        vec!["build", "study.toml", "-o", "data.json"],
         vec!["build", "study.toml", "-o", "study.toml"],
         vec!["build", "study.toml", "-o", "points.csv"],
         vec!["convert", "surrogate.pcc", "study.toml"],

@@ -126,9 +126,12 @@ fn starts_like_json(bytes: &[u8]) -> bool {
     bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{')
 }
 
-/// Whether a file that starts with `bytes` may be a surrogate of either form.
+/// Whether a file that starts with `bytes` looks like a surrogate of either form: the magic, or JSON whose first key is
+/// `format` with a version.
 pub fn looks_like_a_surrogate(bytes: &[u8]) -> bool {
-    bytes.starts_with(&container::MAGIC) || starts_like_json(bytes)
+    const JSON_START: &[u8] = b"{\"format\":{";
+    let start = bytes.iter().copied().filter(|byte| !byte.is_ascii_whitespace());
+    bytes.starts_with(&container::MAGIC) || start.take(JSON_START.len()).eq(JSON_START.iter().copied())
 }
 
 /// Reads a surrogate file.
