@@ -203,6 +203,13 @@ fn expansion(expansion: v1::Expansion, index_sets: &[IndexSet]) -> Result<Expans
 fn training(training: v1::Training) -> Result<Training, ReadError> {
     let counts = training.counts;
     let largest = training.levels.last().copied().unwrap_or(0);
+    let printable = is_printable(&training.method)
+        && is_printable(&training.design)
+        && training.settings.iter().all(|setting| match &setting.value {
+            v1::SettingValue::Text(text) => is_printable(text) && is_printable(&setting.key),
+            _ => is_printable(&setting.key),
+        });
+    ensure("training", printable, || "a word has control characters".to_owned())?;
     let ascending = training.levels.is_sorted_by(|a, b| a < b) && largest > 0;
     ensure("training", ascending, || "the levels of the design do not grow".to_owned())?;
     let parts = [counts.values, counts.gradients, counts.failed, counts.final_mesh];

@@ -7,6 +7,10 @@ use thiserror::Error;
 /// no oscillation. Fourfold zero eigenvalues come out of the solver at about 1e-8 max |λ|.
 const NEGLIGIBLE: f64 = 1e-6;
 
+/// Frequencies that differ by at most this share of max |λ| are equal but for rounding; the growth rate then decides the
+/// order, as it does for an undamped pair in flutter.
+const EQUAL_FREQUENCY: f64 = 1e-12;
+
 /// Why eigenvalues could not be sorted into modes.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SpectrumError {
@@ -61,6 +65,12 @@ impl Spectrum {
             .ok_or(SpectrumError::OnlyRigid)?;
         let mut oscillating: Vec<_> = eigenvalues.iter().filter(|lambda| lambda.im > threshold).copied().collect();
         oscillating.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
+        for k in 1..oscillating.len() {
+            let (before, after) = (oscillating[k - 1], oscillating[k]);
+            if after.im - before.im <= EQUAL_FREQUENCY * largest && after.re < before.re {
+                oscillating.swap(k - 1, k);
+            }
+        }
         Ok(Self { oscillating, max_re, largest })
     }
 
@@ -111,6 +121,14 @@ mod tests {
     fn real_eigenvalues_decide_stability_without_being_modes() {
         let spectrum = spectrum(&[(2.0, 0.0), (-2.0, 0.0), (-1.0, 100.0), (-1.0, -100.0)]);
         assert_eq!((spectrum.count(), spectrum.max_re()), (1, 2.0));
+    }
+
+    #[test]
+    fn equal_frequencies_are_ranked_by_growth_rate() {
+        for rounding in [-1e-11, 1e-11] {
+            let found = spectrum(&[(5.0, 100.0 + rounding), (5.0, -100.0), (-5.0, 100.0), (-5.0, -100.0)]);
+            assert_eq!((found.mode(1).unwrap().re, found.mode(2).unwrap().re), (-5.0, 5.0));
+        }
     }
 
     #[test]

@@ -60,11 +60,12 @@ impl Output {
     }
 }
 
-/// max Re λ, in 1/s; NaN if any part of an eigenvalue is NaN, so that no broken value passes for stable.
+/// max Re λ, in 1/s; NaN if any part of an eigenvalue is NaN or infinite, so that no broken value passes for stable.
 #[inline]
 pub fn spectral_abscissa(eigenvalues: &[Complex<f64>]) -> f64 {
     eigenvalues.iter().fold(f64::NEG_INFINITY, |largest, lambda| {
-        if lambda.im.is_nan() || lambda.re.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(lambda.re) }
+        let is_finite = lambda.re.is_finite() && lambda.im.is_finite();
+        if is_finite && !largest.is_nan() { largest.max(lambda.re) } else { f64::NAN }
     })
 }
 
@@ -76,7 +77,8 @@ mod tests {
     fn spectral_abscissa_is_the_largest_real_part_and_never_hides_nan() {
         let lambda = Complex::new;
         assert_eq!(spectral_abscissa(&[lambda(-2.0, 1.0), lambda(-1.0, 5.0)]), -1.0);
-        for broken in [lambda(f64::NAN, 1.0), lambda(-1.0, f64::NAN)] {
+        let infinite = f64::INFINITY;
+        for broken in [lambda(f64::NAN, 1.0), lambda(-1.0, f64::NAN), lambda(-infinite, 1.0), lambda(-1.0, infinite)] {
             assert!(spectral_abscissa(&[broken, lambda(-1.0, 0.0)]).is_nan());
             assert!(spectral_abscissa(&[lambda(-1.0, 0.0), broken]).is_nan());
         }

@@ -62,6 +62,7 @@ impl Modes {
     /// [`SpectrumError::NoSuchMode`] if a rank is beyond `count`.
     pub fn ranks(&self, count: usize) -> Result<Vec<usize>, SpectrumError> {
         match self {
+            Self::All if count == 0 => Err(SpectrumError::NoSuchMode { mode: 1, count }),
             Self::All => Ok((1..=count).collect()),
             Self::Ranks(ranks) => match ranks.iter().find(|&&mode| mode > count) {
                 Some(&mode) => Err(SpectrumError::NoSuchMode { mode, count }),

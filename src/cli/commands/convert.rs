@@ -3,6 +3,7 @@
 use super::super::arguments::Convert;
 use super::super::{Context, Ending};
 use super::{keep_inputs, keep_other_files, read_surrogate};
+use crate::artifact::version::{Compatibility, compatibility};
 use crate::artifact::{Format, encode, save};
 use anyhow::bail;
 use serde::Serialize;
@@ -14,6 +15,14 @@ pub(in super::super) fn convert(context: &Context, options: &Convert) -> anyhow:
         bail!(
             "{}: has a section of kind {kind} that this pcc does not know and would lose; use the pcc that wrote it",
             options.input.display()
+        );
+    }
+    if compatibility(artifact.version.0, artifact.version.1) == Compatibility::NewerMinor {
+        bail!(
+            "{}: has format {}.{}, which this pcc would write as an older one; use the pcc that wrote it",
+            options.input.display(),
+            artifact.version.0,
+            artifact.version.1
         );
     }
     if !artifact.is_canonical {

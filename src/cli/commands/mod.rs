@@ -54,6 +54,9 @@ fn keep_inputs(output: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
 
 /// Refuses to replace a file that is no surrogate by one: a study or data named by mistake.
 fn keep_other_files(output: &Path) -> anyhow::Result<()> {
+    if !output.is_file() {
+        return Ok(()); // nothing there, or nothing that may be opened: a pipe would block
+    }
     let mut start = Vec::new();
     let read = File::open(output).and_then(|file| file.take(64).read_to_end(&mut start));
     if read.is_ok() && !start.is_empty() && !artifact::looks_like_a_surrogate(&start) {
