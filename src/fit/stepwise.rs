@@ -276,11 +276,16 @@ mod tests {
     }
 
     #[test]
-    fn as_many_significant_terms_as_points_fail_the_size_test() {
-        let problem = problem(5, 1.0);
+    fn as_many_significant_terms_as_points_are_not_even_added() {
+        let problem = problem(6, 1.0);
         let values: Vec<f64> = problem.samples.points().map(|x| (3.0 * x[0] + x[1]).sin()).collect();
-        let eager = Stepwise { epsilon_forward: 0.0, ..settings(1.0, 1.0) };
-        assert!(matches!(problem.fit(&values, &eager), Outcome::TooFewSamples { .. }));
+        let variance = Response { values: &values, resolution: 0.0 }.variance().unwrap();
+        let mut basis = ActiveBasis::constant(&problem.tables, 2, &values, variance, &Silent).unwrap();
+        let five = [problem.shells[1].clone(), problem.shells[2].clone()].concat();
+        assert_eq!(forward_step(&mut basis, &five, 0.0), Ok(false), "with {{0}}, six terms on six points");
+        assert_eq!(basis.indices(), [MultiIndex::constant(2)]);
+        assert_eq!(forward_step(&mut basis, &five[..4], 0.0), Ok(true));
+        assert_eq!(basis.indices().len(), 5);
     }
 
     #[test]
