@@ -3,7 +3,7 @@
 use super::binary::{CERTIFICATES, SECTION_NAMES, decode_body, sections};
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
-use super::version::{Compatibility, MAJOR, MINOR, compatibility};
+use super::version::{Compatibility, MAJOR, compatibility};
 use serde::de::DeserializeOwned;
 
 /// As in PNG, the first byte exposes transfers that clear the eighth bit, and the line ends those that translate them.
@@ -32,7 +32,7 @@ pub(super) fn encode(document: &Document) -> Result<Vec<u8>, WriteError> {
     }
     let mut bytes = MAGIC.to_vec();
     bytes.extend(MAJOR.to_le_bytes());
-    bytes.extend(MINOR.to_le_bytes());
+    bytes.extend(document.format.minor.to_le_bytes());
     bytes.extend(CODEC.to_le_bytes());
     bytes.extend((body.len() as u64).to_le_bytes());
     bytes.append(&mut body);

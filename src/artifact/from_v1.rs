@@ -119,11 +119,11 @@ fn outputs(section: v1::Outputs) -> Result<Vec<Output>, ReadError> {
 fn output(output: v1::Output) -> Result<Output, ReadError> {
     let kind = match output.kind {
         v1::OutputKind::Eigenvalue => OutputKind::Eigenvalue,
-        v1::OutputKind::Cluster => return Err(ReadError::Unsupported { what: "clusters of eigenvalues".into() }),
+        v1::OutputKind::Cluster => OutputKind::Cluster,
         v1::OutputKind::Scalar => return Err(ReadError::Unsupported { what: "scalar outputs".into() }),
     };
-    let shape = (output.components.len(), output.modes.len());
-    ensure("outputs", shape == kind.shape(), || format!("{}: wrong number of components or modes", output.name))?;
+    let is_shaped = kind.components(output.modes.len()) == Some(output.components.len());
+    ensure("outputs", is_shaped, || format!("{}: wrong number of components or modes", output.name))?;
     let printable = [&output.name, &output.unit].into_iter().all(|name| is_printable(name))
         && output.components.iter().all(|component| is_printable(&component.name));
     ensure("outputs", printable, || "a name has control characters".to_owned())?;

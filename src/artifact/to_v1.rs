@@ -4,7 +4,7 @@ use super::binary;
 use super::error::WriteError;
 use super::meaning::not_finite;
 use super::v1;
-use super::version::{MAJOR, MINOR};
+use super::version::{MAJOR, minor};
 use crate::input::Marginal;
 use crate::polynomial::Family;
 use crate::spectrum::{Output, OutputKind};
@@ -13,7 +13,7 @@ use crate::surrogate::{Certificate, Expansion, LeaveOut, SettingValue, StopReaso
 pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
     let provenance = &surrogate.provenance;
     let mut document = v1::Document {
-        format: v1::FormatVersion { major: MAJOR, minor: MINOR },
+        format: v1::FormatVersion { major: MAJOR, minor: minor(surrogate) },
         meta: v1::Meta {
             tool_version: provenance.tool_version.clone(),
             study_name: provenance.study_name.clone(),
@@ -80,6 +80,7 @@ fn output(output: &Output) -> v1::Output {
     v1::Output {
         kind: match output.kind {
             OutputKind::Eigenvalue => v1::OutputKind::Eigenvalue,
+            OutputKind::Cluster => v1::OutputKind::Cluster,
         },
         modes: output.modes.iter().map(|&mode| mode as u32).collect(),
         name: output.name.clone(),

@@ -1,15 +1,25 @@
 //! Versions of the surrogate file and what this code can do with them.
 
+use crate::spectrum::OutputKind;
+use crate::surrogate::Surrogate;
 use std::cmp::Ordering;
 
 /// Major version written and read. It changes when older readers could misunderstand a file.
 pub const MAJOR: u16 = 1;
 
-/// Minor version written. It changes when sections, section versions or kinds are added, which older readers either skip or
-/// refuse by name.
+/// Highest minor version read and written. It changes when sections, section versions or kinds are added, which older
+/// readers either skip or refuse by name.
 ///
 /// * 0: eigenvalue outputs, uniform inputs, one element.
-pub const MINOR: u16 = 0;
+/// * 1: clusters, with modes in the order of their frequencies; the mode of a cluster with the lowest Im λ comes first,
+///   equal frequencies within 10⁻¹² by Re λ.
+pub const MINOR: u16 = 1;
+
+/// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers read
+/// what they can.
+pub(super) fn minor(surrogate: &Surrogate) -> u16 {
+    u16::from(surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster))
+}
 
 /// What this code can do with a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

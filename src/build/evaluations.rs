@@ -1,10 +1,14 @@
 //! The design points and what the model answered there.
 
+use super::BuildError;
 use crate::design::{NestedLatinHypercube, Run, RunError, Runner, Samples};
 use crate::model::ModelError;
 use crate::progress::Observer;
-use crate::spectrum::Output;
+use crate::spectrum::{ClusterError, Output, Spectrum, components as components_of};
 use crate::study::Study;
+
+/// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
+const SOLVER_ACCURACY: f64 = 1e-13;
 
 /// A growing design with one model run per point. No point is run twice.
 pub(super) struct Evaluations<'a> {
@@ -48,19 +52,43 @@ impl<'a> Evaluations<'a> {
         &self.runs
     }
 
-    /// What the study's components form.
-    pub fn outputs(&self) -> Vec<Output> {
-        self.study.spectrum.target.outputs(self.runner.modes())
+    /// What the study's components form, with modes grouped by the spectra found so far.
+    pub fn outputs(&self) -> Result<Vec<Output>, BuildError> {
+        let spectra: Vec<Spectrum> = self.runs.iter().map(|run| run.spectrum.clone()).collect();
+        self.study.spectrum.target.outputs(self.runner.modes(), &spectra).map_err(|cause| {
+            let at = match cause {
+                ClusterError::Split { at, .. } | ClusterError::NearRealAxis { at, .. } => at,
+            };
+            let inputs = &self.study.inputs;
+            BuildError::Clusters { point: inputs.describe(&inputs.physical(self.samples().point(at))), cause }
+        })
     }
 
-    /// The values of each component, by id: one value per point.
-    pub fn components(&self) -> Vec<Vec<f64>> {
-        let count = self.runs.first().map_or(0, |run| run.components.len());
-        (0..count).map(|id| self.runs.iter().map(|run| run.components[id]).collect()).collect()
+    /// The values of each component of `outputs`, by id: one value per point.
+    pub fn components(&self, outputs: &[Output]) -> Result<Vec<Vec<f64>>, BuildError> {
+        let mut components = vec![Vec::with_capacity(self.runs.len()); outputs.iter().map(|o| o.components.len()).sum()];
+        for (i, run) in self.runs.iter().enumerate() {
+            let values = components_of(outputs, &run.spectrum).map_err(|cause| RunError::Spectrum {
+                point: self.study.inputs.describe(&self.study.inputs.physical(self.samples().point(i))),
+                cause,
+            })?;
+            components.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+        }
+        Ok(components)
     }
 
-    /// max |λ| over all points, in 1/s.
-    pub fn largest_eigenvalue(&self) -> f64 {
-        self.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max)
+    /// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver.
+    pub fn resolutions(&self, outputs: &[Output]) -> Vec<f64> {
+        let largest = self.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
+        let mut resolutions = vec![0.0; outputs.iter().map(|output| output.components.len()).sum()];
+        for output in outputs {
+            for (position, component) in output.components.iter().enumerate() {
+                // A coefficient of degree j in distances from the mean has the scale Rʲ: it moves by j Rʲ⁻¹ per unit of λ.
+                let others = (position / 2) as f64;
+                let radius = component.scale.powf(1.0 / (others + 1.0));
+                resolutions[component.id] = SOLVER_ACCURACY * largest * (others + 1.0) * radius.powf(others);
+            }
+        }
+        resolutions
     }
 }

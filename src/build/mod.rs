@@ -1,20 +1,20 @@
-//! The build: design → model runs → components → one sparse expansion each → surrogate.
+//! The build: design → model runs → components → one sparse expansion each → surrogate, until the stopping rule holds.
 
+mod components;
 mod decision;
 mod evaluations;
 mod record;
 
+use components::ComponentFit;
+use decision::{Former, decision};
 use evaluations::Evaluations;
 
 use crate::design::RunError;
-use crate::fit::Fitted;
-use crate::fit::stepwise::{self, Outcome};
-use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
-use crate::input::Input;
+use crate::fit::Stop;
+use crate::index_set::IndexSetError;
 use crate::model::ModelError;
-use crate::parallel::try_map;
 use crate::progress::{Interrupted, Observer};
-use crate::regression::{BasisTables, Response};
+use crate::spectrum::{ClusterError, Output};
 use crate::study::Study;
 use crate::surrogate::Surrogate;
 use thiserror::Error;
@@ -28,6 +28,14 @@ pub enum BuildError {
     /// A model run failed; it is not replaced by a guess.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// Modes could not be grouped.
+    #[error("spectrum.modes: {cause}; found at {point}")]
+    Clusters {
+        /// Where: the inputs with their values.
+        point: String,
+        /// Why.
+        cause: ClusterError,
+    },
     /// There are too many candidate terms.
     #[error(transparent)]
     IndexSet(#[from] IndexSetError),
@@ -43,13 +51,11 @@ impl BuildError {
     }
 }
 
-/// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
-const SOLVER_ACCURACY: f64 = 1e-13;
-
 /// Builds the surrogate of a study on the current rayon thread pool: the same bits for any number of threads.
 ///
-/// All components share one nested design. If any component needs more points than there are, the design grows by one
-/// step and every component starts again from {0}; no model run is repeated or dropped.
+/// All components share one nested design. Level by level it grows by one step until every component is fitted well
+/// enough and, if the study asks for it, the estimated error of the stability proportion is small enough. Modes are grouped
+/// anew at each level; no model run is repeated or dropped.
 ///
 /// # Errors
 ///
@@ -65,76 +71,50 @@ const SOLVER_ACCURACY: f64 = 1e-13;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
-    let shells =
-        Hyperbolic { inputs: study.inputs.dimension(), q_norm: study.fit.q_norm }.shells(study.fit.max_degree)?;
+    let mut fit = ComponentFit::new(study)?;
     let mut evaluations = Evaluations::new(study)?;
     let mut levels = Vec::new();
+    let mut grouping: Vec<Output> = Vec::new();
+    let mut former: Option<Former> = None;
     let mut size = study.design.initial;
     loop {
         levels.push(size as u64);
         evaluations.grow_to(size, observer)?;
-        let fit = ComponentFit::new(study, &evaluations, &shells);
-        let outcomes = fit.search(observer)?;
-        let too_few = outcomes.iter().any(|outcome| matches!(outcome, Outcome::TooFewSamples { .. }));
-        match study.design.next_size(size) {
-            Some(next) if too_few => size = next,
+        let outputs = evaluations.outputs()?;
+        if groups(&outputs) != groups(&grouping) {
+            // Other components: what was learnt of the former ones does not apply.
+            fit.forget(&outputs);
+            former = None;
+        }
+        let next = study.design.next_size(size);
+        let values = evaluations.components(&outputs)?;
+        let resolutions = evaluations.resolutions(&outputs);
+        let fitted = fit.fit(&evaluations.samples(), &values, &resolutions, next.is_some(), observer)?;
+        grouping.clone_from(&outputs);
+        if let (Some(next), None) = (next, &fitted) {
+            size = next;
+            continue;
+        }
+        let fitted = fitted.unwrap_or_default();
+        let is_accurate = fitted.iter().all(|fit| matches!(fit.result.stop, Stop::Accurate | Stop::Constant))
+            || fitted.iter().all(|fit| fit.result.stop != Stop::DesignExhausted);
+        let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, &levels);
+        let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
+        (surrogate.decision, former) = decision(&surrogate, &results, &values, evaluations.runs(), former, observer)?;
+        let is_decided = study.fit.proportion_tolerance.is_none_or(|tolerance| {
+            surrogate.decision.proportion_error.is_some_and(|error| error <= tolerance)
+        });
+        match next {
+            Some(next) if !(is_accurate && is_decided) => size = next,
             _ => {
-                let fitted = fit.settle(outcomes, observer)?;
-                return Ok(record::surrogate(study, &evaluations, fitted, levels));
+                surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
+                return Ok(surrogate);
             }
         }
     }
 }
 
-/// The fit of all components on the current design.
-struct ComponentFit<'a> {
-    study: &'a Study,
-    shells: &'a [Vec<MultiIndex>],
-    tables: BasisTables,
-    /// Values by component id, one per point.
-    components: Vec<Vec<f64>>,
-    /// Differences up to this size are rounding of the eigenvalue solver.
-    resolution: f64,
-}
-
-impl<'a> ComponentFit<'a> {
-    fn new(study: &'a Study, evaluations: &Evaluations<'_>, shells: &'a [Vec<MultiIndex>]) -> Self {
-        let degree = usize::from(study.fit.max_degree);
-        let recurrence = |input: &Input| input.marginal.family().recurrence(degree);
-        let recurrences: Vec<_> = study.inputs.inputs().iter().map(recurrence).collect();
-        Self {
-            study,
-            shells,
-            tables: BasisTables::new(&evaluations.samples(), &recurrences, degree),
-            components: evaluations.components(),
-            resolution: SOLVER_ACCURACY * evaluations.largest_eigenvalue(),
-        }
-    }
-
-    fn response(&self, id: usize) -> Response<'_> {
-        Response { values: &self.components[id], resolution: self.resolution }
-    }
-
-    /// The study's method on every component.
-    fn search(&self, observer: &dyn Observer) -> Result<Vec<Outcome>, Interrupted> {
-        observer.begin("fitting components", self.components.len() as u64);
-        let outcomes = try_map(self.components.len(), |id| {
-            let outcome = stepwise::fit(&self.tables, self.response(id), self.shells, &self.study.fit, observer);
-            observer.advance(1);
-            outcome
-        });
-        observer.finish();
-        outcomes
-    }
-
-    /// The fits, with what the design can carry for components that asked for more.
-    fn settle(&self, outcomes: Vec<Outcome>, observer: &dyn Observer) -> Result<Vec<Fitted>, Interrupted> {
-        let settled = outcomes.into_iter().enumerate().map(|(id, outcome)| match outcome {
-            Outcome::Fitted(fitted) => Ok(fitted),
-            Outcome::TooFewSamples { indices, degree } => {
-                stepwise::settle(&self.tables, self.response(id), &indices, degree, observer)
-            }
-        });
-        settled.collect()
-    }
+/// The modes of each output.
+fn groups(outputs: &[Output]) -> Vec<&[usize]> {
+    outputs.iter().map(|output| output.modes.as_slice()).collect()
 }

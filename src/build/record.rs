@@ -1,12 +1,13 @@
 //! From fitted components to a surrogate that carries its own history.
 
-use super::decision::decision;
+use super::components::ComponentResult;
 use super::evaluations::Evaluations;
 use crate::design::NestedLatinHypercube;
 use crate::fit::{Fitted, Stop};
+use crate::spectrum::{Component, Output};
 use crate::study::{FitMethod, Study};
 use crate::surrogate::{
-    Counts, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, StopReason, Surrogate, Training,
+    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, StopReason, Surrogate, Training,
 };
 
 /// Points of the self-test.
@@ -15,15 +16,17 @@ const SELF_TEST_POINTS: usize = 16;
 /// The self-test has the same points in every surrogate of the same dimension.
 const SELF_TEST_SEED: u64 = 0;
 
+/// The surrogate of one level, not yet judged.
 pub(super) fn surrogate(
     study: &Study,
     evaluations: &Evaluations<'_>,
-    fitted: Vec<Fitted>,
-    levels: Vec<u64>,
+    outputs: Vec<Output>,
+    fitted: &[ComponentResult],
+    levels: &[u64],
 ) -> Surrogate {
-    let outputs = evaluations.outputs();
-    let decision = decision(&outputs, &fitted, evaluations.runs());
-    let mut surrogate = Surrogate {
+    let mut components: Vec<&Component> = outputs.iter().flat_map(|output| &output.components).collect();
+    components.sort_by_key(|component| component.id);
+    Surrogate {
         provenance: Provenance {
             tool_version: env!("CARGO_PKG_VERSION").to_owned(),
             study_name: study.name.clone(),
@@ -31,22 +34,19 @@ pub(super) fn surrogate(
             study_hash: study.study_hash(),
         },
         inputs: study.inputs.clone(),
+        expansions: fitted.iter().zip(components).map(|(fit, component)| expansion(&fit.result, component)).collect(),
         outputs,
-        expansions: fitted.into_iter().map(expansion).collect(),
-        training: training(study, evaluations.runs().len() as u64, levels),
-        decision,
+        training: training(study, fitted, evaluations.runs().len() as u64, levels.to_vec()),
+        decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         certificates: Vec::new(),
-    };
-    surrogate.self_test = surrogate.make_self_test(self_test_points(study));
-    surrogate
+    }
 }
 
-fn expansion(fitted: Fitted) -> Expansion {
+fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
     Expansion {
-        indices: fitted.indices,
-        coefficients: fitted.coefficients,
-        r2: fitted.errors.map(|errors| errors.r2),
+        indices: fitted.indices.clone(),
+        coefficients: fitted.coefficients.iter().map(|coefficient| coefficient / component.scale).collect(),        r2: fitted.errors.map(|errors| errors.r2),
         s2: fitted.errors.and_then(|errors| errors.s2),
         corrected_s2: fitted.errors.and_then(|errors| errors.corrected_s2),
         leave_out: LeaveOut::Row,
@@ -60,19 +60,29 @@ fn expansion(fitted: Fitted) -> Expansion {
     }
 }
 
-fn training(study: &Study, runs: u64, levels: Vec<u64>) -> Training {
+fn training(study: &Study, fitted: &[ComponentResult], runs: u64, levels: Vec<u64>) -> Training {
     let setting = |key: &str, value| Setting { key: key.to_owned(), value };
     let number = |key: &str, value| setting(key, SettingValue::Number(value));
-    let fit = &study.fit;
+    let method = &study.fit.method;
+    let mut settings = vec![setting("max_degree", SettingValue::Integer(method.max_degree().into()))];
+    if let FitMethod::Stepwise(stepwise) = method {
+        settings.push(number("q_norm", stepwise.q_norm));
+    }
+    settings.push(number("s2_target", method.s2_target()));
+    if let FitMethod::Stepwise(stepwise) = method {
+        settings.push(number("epsilon_forward", stepwise.epsilon_forward));
+        settings.push(number("epsilon_backward", stepwise.epsilon_backward));
+    }
+    if let Some(tolerance) = study.fit.proportion_tolerance {
+        settings.push(number("proportion_tolerance", tolerance));
+    }
+    if let FitMethod::Auto(_) = method {
+        let solvers: Vec<&str> = fitted.iter().map(|fit| fit.solver).collect();
+        settings.push(setting("chosen", SettingValue::Text(summary_of(&solvers))));
+    }
     Training {
-        method: FitMethod::Stepwise.name().to_owned(),
-        settings: vec![
-            setting("max_degree", SettingValue::Integer(fit.max_degree.into())),
-            number("q_norm", fit.q_norm),
-            number("s2_target", fit.s2_target),
-            number("epsilon_forward", fit.epsilon_forward),
-            number("epsilon_backward", fit.epsilon_backward),
-        ],
+        method: method.name().to_owned(),
+        settings,
         design: study.design.kind.name().to_owned(),
         seed: study.seed,
         levels,
@@ -80,7 +90,15 @@ fn training(study: &Study, runs: u64, levels: Vec<u64>) -> Training {
     }
 }
 
-fn self_test_points(study: &Study) -> Vec<Vec<f64>> {
+/// One name if all are equal, else all in the order of the components.
+fn summary_of(solvers: &[&str]) -> String {
+    match solvers {
+        [first, rest @ ..] if rest.iter().all(|solver| solver == first) => (*first).to_owned(),
+        _ => solvers.join(" "),
+    }
+}
+
+pub(super) fn self_test_points(study: &Study) -> Vec<Vec<f64>> {
     let mut design = NestedLatinHypercube::new(study.inputs.dimension(), SELF_TEST_SEED);
     design.grow_to(SELF_TEST_POINTS);
     let inputs = study.inputs.inputs();

@@ -52,8 +52,6 @@ pub enum RunError {
 pub struct Run {
     /// All modes.
     pub spectrum: Spectrum,
-    /// Values of the study's components, by id.
-    pub components: Vec<f64>,
     /// Eigenvalues of the study's modes.
     pub eigenvalues: Vec<Complex<f64>>,
 }
@@ -127,8 +125,7 @@ impl<'a> Runner<'a> {
         let Study { inputs, spectrum: asked, .. } = self.study;
         let unusable = |cause| RunError::Spectrum { point: inputs.describe(point), cause };
         self.modes = asked.modes.ranks(spectrum.count()).map_err(unusable)?;
-        let components = asked.target.components(&self.modes, &spectrum).map_err(unusable)?;
         let eigenvalues = self.modes.iter().map(|&mode| spectrum.mode(mode)).collect::<Result<_, _>>();
-        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum, components })
+        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum })
     }
 }

@@ -33,6 +33,14 @@ pub enum EvalError {
         /// Where: the inputs with their values.
         point: String,
     },
+    /// An input was asked for that does not exist.
+    #[error("input number {input} was asked for, but there are only {inputs}; they are numbered from 0")]
+    NoSuchInput {
+        /// Number asked for, from 0.
+        input: usize,
+        /// Number of inputs.
+        inputs: usize,
+    },
     /// The user asked to stop.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
@@ -103,7 +111,7 @@ fn summarise(
         evaluator.evaluate(lanes, set_point, &mut block);
     }
     match block.first_not_finite() {
-        None => Ok(Summary::of(&block)),
+        None => Ok(Summary::of(&block, surrogate.decision.band_shifts())),
         Some(at) => {
             let mut point = vec![0.0; surrogate.inputs.dimension()];
             random_point(&surrogate.inputs, seed, Purpose::Evaluation, range.start + at as u64, &mut point);

@@ -1,6 +1,12 @@
 //! Fitting methods: from values on a design to one sparse expansion.
 
+pub mod auto;
+pub mod minimum_norm;
+pub mod omp;
+mod prior;
 pub mod stepwise;
+
+pub use prior::Prior;
 
 use crate::index_set::{IndexSet, MultiIndex};
 use crate::progress::Interrupted;
@@ -19,6 +25,15 @@ pub enum Stop {
     Constant,
 }
 
+/// Leave-one-out residuals at points that took no part in any choice of the fit, and so do not flatter it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlindResiduals {
+    /// The first of these points; they are the last of the design.
+    pub first: usize,
+    /// One residual per point from there on.
+    pub values: Vec<f64>,
+}
+
 /// A fitted expansion of one component, with its error measures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
@@ -30,6 +45,8 @@ pub struct Fitted {
     pub errors: Option<ErrorMeasures>,
     /// Differences between values and their leave-one-out predictions, if determined.
     pub leave_one_out_residuals: Option<Vec<f64>>,
+    /// The same at points that chose nothing; `None` if every point took part in choosing the settings of the fit.
+    pub blind_residuals: Option<BlindResiduals>,
     /// Degree p at which the search ended.
     pub degree: u16,
     /// Why it ended.
@@ -37,6 +54,7 @@ pub struct Fitted {
 }
 
 impl Fitted {
+    /// A least-squares fit. Its leave-one-out residuals count as blind: the terms were chosen by R², not by them.
     fn new(basis: &ActiveBasis<'_>, degree: u16, stop: Stop) -> Result<Self, Interrupted> {
         let mut terms: Vec<(MultiIndex, f64)> = basis.indices().iter().cloned().zip(basis.coefficients()).collect();
         terms.sort_by(|a, b| a.0.cmp(&b.0));
@@ -45,6 +63,7 @@ impl Fitted {
             indices: IndexSet::from_unsorted(indices),
             coefficients,
             errors: Some(basis.errors()?),
+            blind_residuals: basis.leave_one_out_residuals().map(|values| BlindResiduals { first: 0, values }),
             leave_one_out_residuals: basis.leave_one_out_residuals(),
             degree,
             stop,
@@ -54,11 +73,13 @@ impl Fitted {
     /// The mean of values that do not vary.
     fn constant(inputs: usize, values: &[f64]) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let residuals: Vec<f64> = values.iter().map(|value| value - mean).collect();
         Self {
             indices: IndexSet::from_unsorted(vec![MultiIndex::constant(inputs)]),
             coefficients: vec![mean],
             errors: None,
-            leave_one_out_residuals: Some(values.iter().map(|value| value - mean).collect()),
+            blind_residuals: Some(BlindResiduals { first: 0, values: residuals.clone() }),
+            leave_one_out_residuals: Some(residuals),
             degree: 0,
             stop: Stop::Constant,
         }

@@ -1,5 +1,8 @@
 //! Linear algebra and quadrature that know nothing of mechanics or probability.
 
 pub mod eigenvalues;
+pub mod minimize;
+pub mod positive_definite;
 pub mod qr;
 pub mod quadrature;
+pub mod roots;

@@ -1,11 +1,14 @@
 //! A surrogate against its model on the same points.
 
 use super::monte_carlo::{ReferenceError, for_each_chunk};
+use crate::design::Run;
 use crate::eval::{Plan, evaluate_points};
 use crate::progress::Observer;
+use crate::spectrum::{Block, Component, Output, OutputKind, SpectrumError};
 use crate::statistics::{Moments, Proportion};
 use crate::study::Study;
 use crate::surrogate::Surrogate;
+use nalgebra::Complex;
 
 /// Standard deviations below this share of the mean are rounding.
 const CONSTANT: f64 = 1e-12;
@@ -111,18 +114,12 @@ pub fn compare(
         stable_surrogate: 0,
         falsely_stable: 0,
         falsely_unstable: 0,
-        components: surrogate
-            .components()
-            .iter()
-            .map(|component| ComponentError {
-                name: component.name.clone(),
-                model: Moments::default(),
-                surrogate: Moments::default(),
-            })
-            .collect(),
+        components: Vec::new(),
     };
     for_each_chunk(study, samples, seed, observer, |runner, points, runs| {
-        if study.spectrum.target.outputs(runner.modes()) != surrogate.outputs {
+        let mut modes = surrogate.modes();
+        modes.sort_unstable();
+        if modes != runner.modes() {
             return Err(other_problem());
         }
         let block = evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
@@ -130,19 +127,84 @@ pub fn compare(
             let point = study.inputs.describe(&study.inputs.physical(&points[at]));
             return Err(ReferenceError::NotFinite { point });
         }
-        for (run, &max_re) in runs.iter().zip(&block.max_re) {
-            let (model, found) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
-            comparison.stable_model += u64::from(model);
-            comparison.stable_surrogate += u64::from(found);
-            comparison.falsely_stable += u64::from(found && !model);
-            comparison.falsely_unstable += u64::from(model && !found);
-        }
-        for (id, component) in comparison.components.iter_mut().enumerate() {
-            component.surrogate.merge(&Moments::of(&block.components[id]));
-            let values: Vec<f64> = runs.iter().map(|run| run.components[id]).collect();
-            component.model.merge(&Moments::of(&values));
-        }
+        comparison.classify(runs, &block);
+        let mut errors = mode_errors(runner.modes(), surrogate, runs, &block);
+        let at_point = |i: usize| study.inputs.describe(&study.inputs.physical(&points[i]));
+        errors.extend(
+            invariant_errors(surrogate, runs, &block)
+                .map_err(|(i, cause)| ReferenceError::Spectrum { point: at_point(i), cause })?,
+        );
+        comparison.merge(errors);
         Ok(())
     })?;
     Ok(comparison)
+}
+
+impl Comparison {
+    /// Counts on whose stability model and surrogate disagree.
+    fn classify(&mut self, runs: &[Run], block: &Block) {
+        for (run, &max_re) in runs.iter().zip(&block.max_re) {
+            let (model, found) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
+            self.stable_model += u64::from(model);
+            self.stable_surrogate += u64::from(found);
+            self.falsely_stable += u64::from(found && !model);
+            self.falsely_unstable += u64::from(model && !found);
+        }
+    }
+
+    fn merge(&mut self, errors: Vec<ComponentError>) {
+        if self.components.is_empty() {
+            self.components = errors;
+            return;
+        }
+        for (own, added) in self.components.iter_mut().zip(errors) {
+            own.model.merge(&added.model);
+            own.surrogate.merge(&added.surrogate);
+        }
+    }
+}
+
+/// Re λ and Im λ of every mode.
+fn mode_errors(modes: &[usize], surrogate: &Surrogate, runs: &[Run], block: &Block) -> Vec<ComponentError> {
+    let parts: [(&str, fn(&Complex<f64>) -> f64); 2] = [("re", |lambda| lambda.re), ("im", |lambda| lambda.im)];
+    let order = surrogate.modes();
+    let mut errors = Vec::with_capacity(2 * modes.len());
+    for (at, mode) in modes.iter().enumerate() {
+        let Some(position) = order.iter().position(|other| other == mode) else { continue };
+        for (name, part) in parts {
+            let model: Vec<f64> = runs.iter().map(|run| part(&run.eigenvalues[at])).collect();
+            let found: Vec<f64> = block.eigenvalues[position].iter().map(part).collect();
+            errors.push(ComponentError {
+                name: format!("{name}_{mode}"),
+                model: Moments::of(&model),
+                surrogate: Moments::of(&found),
+            });
+        }
+    }
+    errors
+}
+
+/// The components of clusters, which are no eigenvalues themselves.
+fn invariant_errors(
+    surrogate: &Surrogate,
+    runs: &[Run],
+    block: &Block,
+) -> Result<Vec<ComponentError>, (usize, SpectrumError)> {
+    let clusters: Vec<&Output> =
+        surrogate.outputs.iter().filter(|output| output.kind == OutputKind::Cluster).collect();
+    let mut values = vec![Vec::with_capacity(runs.len()); surrogate.expansions.len()];
+    let mut at_run = vec![0.0; surrogate.expansions.len()];
+    for (i, run) in runs.iter().enumerate() {
+        for output in &clusters {
+            output.decompose(&run.spectrum, &mut at_run).map_err(|cause| (i, cause))?;
+        }
+        values.iter_mut().zip(&at_run).for_each(|(list, &value)| list.push(value));
+    }
+    let error = |component: &&Component| ComponentError {
+        name: component.name.clone(),
+        model: Moments::of(&values[component.id]),
+        surrogate: Moments::of(&block.components[component.id]),
+    };
+    let components: Vec<&Component> = clusters.iter().flat_map(|output| &output.components).collect();
+    Ok(components.iter().map(error).collect())
 }

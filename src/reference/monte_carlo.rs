@@ -5,7 +5,7 @@ use crate::input::random_point;
 use crate::model::ModelError;
 use crate::progress::Observer;
 use crate::random::Purpose;
-use crate::spectrum::{Block, Output, Summary};
+use crate::spectrum::{Block, Output, SpectrumError, Summary, Target};
 use crate::study::Study;
 use thiserror::Error;
 
@@ -34,6 +34,14 @@ pub enum ReferenceError {
         surrogate: String,
         /// Hash of the study.
         study: String,
+    },
+    /// A mode of the surrogate is missing at a point.
+    #[error("{cause}; found at {point}")]
+    Spectrum {
+        /// Where: the inputs with their values.
+        point: String,
+        /// Why.
+        cause: SpectrumError,
     },
     /// The surrogate has no finite value at a point.
     #[error("the surrogate's value at {point} is not a finite number; the file is of no use there")]
@@ -83,7 +91,7 @@ pub(super) fn for_each_chunk(
 /// What direct computations say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// The study's outputs: what the components form.
+    /// Re λ and Im λ of every mode of the study.
     pub outputs: Vec<Output>,
     /// Statistics.
     pub summary: Summary,
@@ -103,17 +111,25 @@ pub fn monte_carlo(
 ) -> Result<Reference, ReferenceError> {
     let mut reference: Option<Reference> = None;
     for_each_chunk(study, samples, seed, observer, |runner, _, runs| {
-        let (components, modes) = (runs[0].components.len(), runner.modes().len());
-        let mut block = Block::with_capacity(components, modes, runs.len());
+        let outputs = mode_outputs(runner.modes());
+        let mut block = Block::with_capacity(2 * outputs.len(), outputs.len(), runs.len());
         for run in runs {
-            block.push(&run.components, &run.eigenvalues, run.spectrum.max_re());
+            block.push(&mode_components(run), &run.eigenvalues, run.spectrum.max_re());
         }
-        let empty = || Reference {
-            outputs: study.spectrum.target.outputs(runner.modes()),
-            summary: Summary::new(components, modes),
-        };
-        reference.get_or_insert_with(empty).summary.merge(&Summary::of(&block));
+        let empty = || Reference { summary: Summary::new(2 * outputs.len(), outputs.len()), outputs };
+        reference.get_or_insert_with(empty).summary.merge(&Summary::of(&block, [0.0; 2]));
         Ok(())
     })?;
     reference.ok_or(ReferenceError::NoSamples)
+}
+
+/// Re λ and Im λ of every mode: the components of a reference, whatever a surrogate expands.
+pub(super) fn mode_outputs(modes: &[usize]) -> Vec<Output> {
+    // Eigenvalues are not grouped, so no spectrum is needed and nothing can be wrong with one.
+    Target::Eigenvalues.outputs(modes, &[]).unwrap_or_default()
+}
+
+/// The values of these components at one point.
+pub(super) fn mode_components(run: &Run) -> Vec<f64> {
+    run.eigenvalues.iter().flat_map(|lambda| [lambda.re, lambda.im]).collect()
 }

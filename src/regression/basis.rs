@@ -6,7 +6,7 @@ use crate::index_set::MultiIndex;
 use crate::numerics::qr::ColumnQr;
 use crate::polynomial::Recurrence;
 use crate::progress::{Interrupted, Observer};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DMatrixView, DVector};
 
 /// Candidates evaluated together: wide enough for fast matrix products, small enough for the cache.
 const CANDIDATE_BLOCK: usize = 64;
@@ -45,6 +45,13 @@ impl BasisTables {
     fn univariate(&self, input: usize, degree: u16) -> &[f64] {
         let start = (input * self.degrees + usize::from(degree)) * self.samples;
         &self.values[start..start + self.samples]
+    }
+
+    /// The matrix with the column φ_k(ξ_ij) for each degree k = 1…`degree` of input j, one row per point i.
+    pub fn powers(&self, input: usize, degree: u16) -> DMatrixView<'_, f64> {
+        let start = (input * self.degrees + 1) * self.samples;
+        let end = start + usize::from(degree) * self.samples;
+        DMatrixView::from_slice(&self.values[start..end], self.samples, degree.into())
     }
 
     /// The matrix Ψ with the column ψ_α(ξ_i) = Π_j φ_{α_j}(ξ_ij) for each α.

@@ -1,11 +1,13 @@
 //! Spectra: which eigenvalues are modes, in which order, and how components become eigenvalues again.
 
+mod clusters;
 mod modes;
 mod recombination;
 mod summary;
 mod target;
 
+pub use clusters::{ClusterError, clusters};
 pub use modes::{Spectrum, SpectrumError};
 pub use recombination::{Component, Output, OutputKind, spectral_abscissa};
 pub use summary::{Block, ModeSummary, Summary};
-pub use target::{Modes, Target};
+pub use target::{Modes, Target, components};

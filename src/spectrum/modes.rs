@@ -91,6 +91,11 @@ impl Spectrum {
             .ok_or(SpectrumError::NoSuchMode { mode, count: self.count() })
     }
 
+    /// The eigenvalues of all modes, by frequency rank.
+    pub fn oscillating(&self) -> &[Complex<f64>] {
+        &self.oscillating
+    }
+
     /// max |λ|, in 1/s: the scale of rounding errors in all eigenvalues.
     pub fn largest(&self) -> f64 {
         self.largest

@@ -1,5 +1,6 @@
 //! From components to eigenvalues: the part of the spectrum that an evaluator needs.
 
+use crate::numerics::roots::roots;
 use nalgebra::Complex;
 
 /// How the components of an output form eigenvalues.
@@ -8,16 +9,27 @@ use nalgebra::Complex;
 pub enum OutputKind {
     /// Two components, Re λ and Im λ of one mode.
     Eigenvalue,
+    /// 2k components for k modes: Re and Im of the mean s of the eigenvalues, then Re and Im of the coefficients
+    /// c_{k−2}, …, c_0 of z^k + c_{k−2} z^{k−2} + … + c_0, whose roots are λ − s. They are smooth where eigenvalues coalesce.
+    Cluster,
 }
 
+/// Frequencies that differ by at most this share of |λ| are equal but for rounding, and rank by growth rate.
+const EQUAL_FREQUENCY: f64 = 1e-12;
+
 impl OutputKind {
-    /// Number of components and number of modes of such an output.
-    pub fn shape(self) -> (usize, usize) {
-        match self {
-            Self::Eigenvalue => (2, 1),
+    /// Number of components of such an output for so many modes; `None` if it cannot have so many.
+    pub fn components(self, modes: usize) -> Option<usize> {
+        match (self, modes) {
+            (Self::Eigenvalue, 1) => Some(2),
+            (Self::Cluster, 2..=MOST_MODES) => Some(2 * modes),
+            _ => None,
         }
     }
 }
+
+/// Modes in one cluster at most: polynomials of higher degree have roots too sensitive to be of use.
+pub const MOST_MODES: usize = 16;
 
 /// One real function of the inputs, given by an expansion: value = center + scale × expansion.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,14 +60,48 @@ pub struct Output {
 }
 
 impl Output {
-    /// Writes the eigenvalues of this output's modes into `eigenvalues`, given the values of all components by id.
+    /// Appends the eigenvalues of this output's modes, by frequency, to `eigenvalues`, given the values of all components
+    /// by id.
     #[inline]
     pub fn recombine(&self, values: &[f64], eigenvalues: &mut Vec<Complex<f64>>) {
-        match self.kind {
-            OutputKind::Eigenvalue => {
-                let value = |k: usize| values[self.components[k].id];
-                eigenvalues.push(Complex::new(value(0), value(1)));
+        let part = |k: usize| Complex::new(values[self.components[2 * k].id], values[self.components[2 * k + 1].id]);
+        match (self.kind, self.modes.len()) {
+            (OutputKind::Eigenvalue, _) => eigenvalues.push(part(0)),
+            (OutputKind::Cluster, 2) => {
+                // λ = s ± √−c_0
+                let (mean, root) = (part(0), (-part(1)).sqrt());
+                let pair = [mean - root, mean + root];
+                let swapped = ranks_after(&pair[0], &pair[1]);
+                eigenvalues.extend([pair[usize::from(swapped)], pair[usize::from(!swapped)]]);
             }
+            (OutputKind::Cluster, modes) => {
+                let (mut coefficients, mut found) = ([Complex::default(); MOST_MODES], [Complex::default(); MOST_MODES]);
+                for k in 1..modes.min(MOST_MODES) {
+                    coefficients[k] = part(k);
+                }
+                let found = &mut found[..modes.min(MOST_MODES)];
+                roots(&coefficients[..found.len()], found);
+                found.iter_mut().for_each(|root| *root += part(0));
+                sort_by_frequency(found);
+                eigenvalues.extend_from_slice(found);
+            }
+        }
+    }
+}
+
+/// Whether `first` comes after `second` in the order of modes: by frequency, equal frequencies by growth rate.
+fn ranks_after(first: &Complex<f64>, second: &Complex<f64>) -> bool {
+    let gap = first.im - second.im;
+    if gap.abs() <= EQUAL_FREQUENCY * first.im.abs() { first.re > second.re } else { gap > 0.0 }
+}
+
+/// Insertion sort: clusters are small, and equality within rounding is no total order.
+fn sort_by_frequency(lambdas: &mut [Complex<f64>]) {
+    for end in 1..lambdas.len() {
+        let mut at = end;
+        while at > 0 && ranks_after(&lambdas[at - 1], &lambdas[at]) {
+            lambdas.swap(at - 1, at);
+            at -= 1;
         }
     }
 }

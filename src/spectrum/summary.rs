@@ -21,6 +21,8 @@ pub struct ModeSummary {
 pub struct Summary {
     /// Samples with max Re λ < 0.
     pub stable: u64,
+    /// Samples that would be stable if max Re λ were larger by the first, and by the second, of two shifts.
+    pub stable_if_shifted: [u64; 2],
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Moments,
     /// Every component by id.
@@ -34,6 +36,7 @@ impl Summary {
     pub fn new(components: usize, modes: usize) -> Self {
         Self {
             stable: 0,
+            stable_if_shifted: [0; 2],
             max_re: Moments::default(),
             components: vec![Moments::default(); components],
             modes: vec![ModeSummary::default(); modes],
@@ -50,8 +53,8 @@ impl Summary {
         Proportion { hits: self.stable, samples: self.samples() }
     }
 
-    /// The statistics of one block of samples.
-    pub fn of(block: &Block) -> Self {
+    /// The statistics of one block of samples. `shifts`, in 1/s, are errors of max Re λ that could be.
+    pub fn of(block: &Block, shifts: [f64; 2]) -> Self {
         let modes = block.eigenvalues.iter().map(|lambdas| {
             let part = |part: fn(&Complex<f64>) -> f64| Moments::of(&lambdas.iter().map(part).collect::<Vec<_>>());
             ModeSummary {
@@ -61,8 +64,10 @@ impl Summary {
                 unstable: lambdas.iter().filter(|lambda| lambda.re >= 0.0).count() as u64,
             }
         });
+        let stable = |shift: f64| block.max_re.iter().filter(|&&max_re| max_re + shift < 0.0).count() as u64;
         Self {
-            stable: block.max_re.iter().filter(|&&max_re| max_re < 0.0).count() as u64,
+            stable: stable(0.0),
+            stable_if_shifted: shifts.map(stable),
             max_re: Moments::of(&block.max_re),
             components: block.components.iter().map(|values| Moments::of(values)).collect(),
             modes: modes.collect(),
@@ -72,6 +77,8 @@ impl Summary {
     /// Adds the samples of `other`, which has as many components and modes.
     pub fn merge(&mut self, other: &Self) {
         self.stable += other.stable;
+        self.stable_if_shifted[0] += other.stable_if_shifted[0];
+        self.stable_if_shifted[1] += other.stable_if_shifted[1];
         self.max_re.merge(&other.max_re);
         for (own, added) in self.components.iter_mut().zip(&other.components) {
             own.merge(added);
@@ -104,6 +111,13 @@ impl Block {
             eigenvalues: (0..modes).map(|_| Vec::with_capacity(samples)).collect(),
             max_re: Vec::with_capacity(samples),
         }
+    }
+
+    /// Adds the samples of `other`, which has as many components and modes.
+    pub fn append(&mut self, mut other: Self) {
+        self.components.iter_mut().zip(&mut other.components).for_each(|(own, added)| own.append(added));
+        self.eigenvalues.iter_mut().zip(&mut other.eigenvalues).for_each(|(own, added)| own.append(added));
+        self.max_re.append(&mut other.max_re);
     }
 
     /// The first sample whose max Re λ is not finite, because a component overflowed.

@@ -1,6 +1,6 @@
 //! Defaults of a study: at most one formula in the number of inputs r each.
 
-use crate::spectrum::Modes;
+use crate::spectrum::{Modes, Target};
 
 pub(super) const SEED: u64 = 1;
 pub(super) const MODES: Modes = Modes::All;
@@ -13,13 +13,22 @@ pub(super) const Q_NORM: f64 = 0.6;
 pub(super) const EPSILON_FORWARD: f64 = 1e-5;
 pub(super) const EPSILON_BACKWARD: f64 = 1e-5;
 
-/// Where the paper's table stops.
-pub(super) const MAXIMUM: usize = 10_000;
-
-pub(super) fn initial(inputs: usize) -> usize {
-    15 * inputs * inputs
+/// Where the paper's table stops; for invariants, where the matrices of the minimum-norm fit begin to cost minutes.
+pub(super) fn maximum(target: Target) -> usize {
+    match target {
+        Target::Eigenvalues => 10_000,
+        _ => 2_000,
+    }
 }
 
-pub(super) fn step(inputs: usize) -> usize {
-    15 * inputs * inputs
+/// For invariants: a tenth of a percent of the proportion, a tenth of what the sampling of a few thousand runs leaves open.
+pub(super) const PROPORTION_TOLERANCE: f64 = 1e-3;
+
+/// Runs of the first level, and of each enrichment. Eigenvalues need some terms for every pair of inputs at high degree;
+/// invariants few, and at least two levels to judge by, the second twice the first.
+pub(super) fn level(target: Target, inputs: usize) -> usize {
+    match target {
+        Target::Eigenvalues => 15 * inputs * inputs,
+        _ => (inputs * inputs + 7 * inputs).max(10),
+    }
 }

@@ -62,6 +62,12 @@ pub enum StudyError {
         /// Parameters of the model.
         known: String,
     },
+    /// A setting of the stepwise method beside another method.
+    #[error("{place}: belongs to method = \"stepwise\"; choose that method or remove the key")]
+    KeyOfStepwise {
+        /// Where.
+        place: Place,
+    },
     /// A parameter is both a constant and an input.
     #[error("{place}: is also an uncertain input; remove one of the two")]
     ConstantAndInput {

@@ -17,16 +17,19 @@ pub(super) fn study_hash(study: &Study) -> String {
     let Study { name, seed, design, fit, .. } = study;
     let _ = writeln!(text, "name {name}\nseed {seed}");
     let _ = writeln!(text, "design {} {} {} {}", design.kind.name(), design.initial, design.step, design.maximum);
-    let _ = writeln!(
-        text,
-        "fit {} {} {:?} {:?} {:?} {:?}",
-        FitMethod::Stepwise.name(),
-        fit.max_degree,
-        fit.q_norm,
-        fit.s2_target,
-        fit.epsilon_forward,
-        fit.epsilon_backward
-    );
+    let method = &fit.method;
+    let _ = write!(text, "fit {} {}", method.name(), method.max_degree());
+    if let FitMethod::Stepwise(stepwise) = method {
+        let _ = write!(text, " {:?}", stepwise.q_norm);
+    }
+    let _ = write!(text, " {:?}", method.s2_target());
+    if let FitMethod::Stepwise(stepwise) = method {
+        let _ = write!(text, " {:?} {:?}", stepwise.epsilon_forward, stepwise.epsilon_backward);
+    }
+    text.push('\n');
+    if let Some(tolerance) = fit.proportion_tolerance {
+        let _ = writeln!(text, "proportion tolerance {tolerance:?}");
+    }
     sha256(text.as_bytes())
 }
 

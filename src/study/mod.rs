@@ -9,7 +9,9 @@ mod settings;
 mod validate;
 
 pub use error::{Place, StudyError};
-pub use settings::{DesignKind, DesignSettings, FitMethod, ModelSettings, SpectrumSettings, Stepwise};
+pub use settings::{
+    DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
+};
 
 use crate::input::InputSpace;
 use crate::model::{Clutch, Model, ModelError};
@@ -33,7 +35,7 @@ pub const STUDY_FORMAT: u32 = 1;
 ///     mu = { distribution = "uniform", lower = 0.0, upper = 0.5 }
 ///     "#,
 /// )?;
-/// assert_eq!(study.fit.max_degree, 15);
+/// assert_eq!(study.fit.method.max_degree(), 15);
 /// assert_eq!(Study::from_toml(&study.to_toml())?, study);
 /// # Ok::<(), pcc::study::StudyError>(())
 /// ```
@@ -52,7 +54,7 @@ pub struct Study {
     /// Where the model is run.
     pub design: DesignSettings,
     /// How expansions are fitted.
-    pub fit: Stepwise,
+    pub fit: FitSettings,
 }
 
 impl Study {

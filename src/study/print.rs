@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{FitMethod, ModelSettings, STUDY_FORMAT, Study};
+use super::{FitMethod, FitSettings, ModelSettings, STUDY_FORMAT, Study};
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
-use crate::spectrum::Modes;
+use crate::spectrum::{Modes, Target};
 
 /// Column at which explanations start.
 const COMMENT_COLUMN: usize = 34;
@@ -23,7 +23,11 @@ pub(super) fn study(study: &Study) -> String {
         Modes::All => "\"all\"".to_owned(),
         Modes::Ranks(ranks) => format!("{ranks:?}"),
     };
-    file.line("target", format!("{:?}", study.spectrum.target.name()), "what is expanded: Re and Im of each mode");
+    let expanded = match study.spectrum.target {
+        Target::Eigenvalues => "what is expanded: Re and Im of each mode",
+        Target::Invariants => "what is expanded: symmetric functions of modes that come close",
+    };
+    file.line("target", format!("{:?}", study.spectrum.target.name()), expanded);
     file.line("modes", modes, "by frequency rank from 1, or \"all\" that oscillate");
 
     file.table("design");
@@ -33,14 +37,33 @@ pub(super) fn study(study: &Study) -> String {
     file.line("maximum", study.design.maximum, "model runs never exceeded");
 
     file.table("fit");
-    let fit = &study.fit;
-    file.line("method", format!("{:?}", FitMethod::Stepwise.name()), "the paper's algorithm");
-    file.line("max_degree", fit.max_degree, "p_max");
-    file.line("q_norm", float(fit.q_norm), "q of the hyperbolic index sets, above 0 and at most 1");
-    file.line("s2_target", float(fit.s2_target), "leave-one-out S² that is accurate enough");
-    file.line("epsilon_forward", float(fit.epsilon_forward), "ε₁: a term is kept if it raises R² by this");
-    file.line("epsilon_backward", float(fit.epsilon_backward), "ε₂: a term is dropped if that lowers R² by less");
+    fit(&mut file, &study.fit);
     file.text
+}
+
+fn fit(file: &mut Printer, fit: &FitSettings) {
+    let (explanation, degree) = match fit.method {
+        FitMethod::Stepwise(_) => ("the paper's algorithm", "p_max"),
+        FitMethod::Omp(_) => ("orthogonal matching pursuit", "of the candidates"),
+        FitMethod::MinimumNorm(_) => ("weighted minimum norm", "in each input"),
+        FitMethod::Auto(_) => ("the better of minimum-norm and omp", "in each input"),
+    };
+    file.line("method", format!("{:?}", fit.method.name()), explanation);
+    file.line("max_degree", fit.method.max_degree(), degree);
+    if let FitMethod::Stepwise(stepwise) = &fit.method {
+        file.line("q_norm", float(stepwise.q_norm), "q of the hyperbolic index sets, above 0 and at most 1");
+    }
+    file.line("s2_target", float(fit.method.s2_target()), "leave-one-out S² that is accurate enough");
+    if let FitMethod::Stepwise(stepwise) = &fit.method {
+        let (forward, backward) = (float(stepwise.epsilon_forward), float(stepwise.epsilon_backward));
+        file.line("epsilon_forward", forward, "ε₁: a term is kept if it raises R² by this");
+        file.line("epsilon_backward", backward, "ε₂: a term is dropped if that lowers R² by less");
+    }
+    let tolerance = "estimated relative error of the stability proportion that is small enough";
+    match fit.proportion_tolerance {
+        Some(value) => file.line("proportion_tolerance", float(value), tolerance),
+        None => file.line("# proportion_tolerance", "0.001", &format!("{tolerance}; not used unless written")),
+    }
 }
 
 fn model(file: &mut Printer, model: &ModelSettings) {

@@ -76,6 +76,7 @@ pub(super) struct Fit {
     pub s2_target: Option<Spanned<f64>>,
     pub epsilon_forward: Option<Spanned<f64>>,
     pub epsilon_backward: Option<Spanned<f64>>,
+    pub proportion_tolerance: Option<Spanned<f64>>,
 }
 
 /// A table whose order matters: the order of inputs is the order of the standardized variables.

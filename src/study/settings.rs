@@ -68,19 +68,54 @@ impl DesignSettings {
     }
 }
 
+/// How expansions are fitted, and when the design is large enough.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitSettings {
+    /// Fitting method with its settings.
+    pub method: FitMethod,
+    /// Estimated relative error of the stability proportion at which the design is large enough, in (0, 1\]; without it
+    /// the fits of the components alone decide.
+    pub proportion_tolerance: Option<f64>,
+}
+
 /// Fitting methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum FitMethod {
     /// The paper's stepwise regression.
-    Stepwise,
+    Stepwise(Stepwise),
+    /// Orthogonal matching pursuit.
+    Omp(Smooth),
+    /// Weighted minimum norm.
+    MinimumNorm(Smooth),
+    /// For each component the better of pursuit and minimum norm.
+    Auto(Smooth),
 }
 
 impl FitMethod {
     /// Name in study files.
-    pub fn name(self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
-            Self::Stepwise => "stepwise",
+            Self::Stepwise(_) => "stepwise",
+            Self::Omp(_) => "omp",
+            Self::MinimumNorm(_) => "minimum-norm",
+            Self::Auto(_) => "auto",
+        }
+    }
+
+    /// Highest degree.
+    pub fn max_degree(&self) -> u16 {
+        match self {
+            Self::Stepwise(settings) => settings.max_degree,
+            Self::Omp(settings) | Self::MinimumNorm(settings) | Self::Auto(settings) => settings.max_degree,
+        }
+    }
+
+    /// S² at which a component is accurate enough.
+    pub fn s2_target(&self) -> f64 {
+        match self {
+            Self::Stepwise(settings) => settings.s2_target,
+            Self::Omp(settings) | Self::MinimumNorm(settings) | Self::Auto(settings) => settings.s2_target,
         }
     }
 }
@@ -98,4 +133,13 @@ pub struct Stepwise {
     pub epsilon_forward: f64,
     /// ε₂: the fall of R² below which a term is dropped, not negative.
     pub epsilon_backward: f64,
+}
+
+/// Settings of the methods that choose degree, norm and number of terms by cross-validation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smooth {
+    /// Highest degree: of each input for the minimum-norm fit, of the index set for pursuit; at least 1.
+    pub max_degree: u16,
+    /// S² at which a component is accurate enough, in (0, 1\].
+    pub s2_target: f64,
 }

@@ -5,7 +5,9 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use super::error::{Place, StudyError};
-use super::settings::{DesignKind, DesignSettings, FitMethod, ModelSettings, SpectrumSettings, Stepwise};
+use super::settings::{
+    DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
+};
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::input::{Input, InputSpace, Marginal, Uniform};
 use crate::model::{CLUTCH_PARAMETERS, Parameter};
@@ -16,6 +18,8 @@ const HIGHEST_DEGREE: i64 = 100;
 
 /// Design sizes above this need more memory for the regression than a workstation has.
 const LARGEST_DESIGN: i64 = 1_000_000;
+
+const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
 /// Univariate polynomial values that a design may need: two gigabytes.
 const LARGEST_TABLES: usize = 250_000_000;
@@ -36,18 +40,20 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     let inputs = lines.inputs(raw.inputs)?;
     let constants = lines.constants(raw.model.constants, &inputs)?;
     let dimension = inputs.dimension();
-    let fit = lines.fit(raw.fit)?;
-    let design = lines.design(raw.design, dimension)?;
-    let numbers = dimension.saturating_mul(usize::from(fit.max_degree) + 1).saturating_mul(design.maximum);
+    let spectrum = lines.spectrum(raw.spectrum)?;
+    let fit = lines.fit(raw.fit, spectrum.target)?;
+    let design = lines.design(raw.design, spectrum.target, dimension)?;
+    let max_degree = fit.method.max_degree();
+    let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
     if numbers > LARGEST_TABLES {
-        return Err(StudyError::TooLarge { inputs: dimension, max_degree: fit.max_degree, maximum: design.maximum });
+        return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
     }
     Ok(Study {
         name,
         seed,
         model: ModelSettings::Clutch { constants },
         inputs,
-        spectrum: lines.spectrum(raw.spectrum)?,
+        spectrum,
         design,
         fit,
     })
@@ -174,7 +180,7 @@ impl Lines<'_> {
 
     fn spectrum(&self, raw: raw::Spectrum) -> Result<SpectrumSettings, StudyError> {
         let target = match raw.target {
-            Some(word) => self.word("spectrum.target", &word, &[("eigenvalues", Target::Eigenvalues)])?,
+            Some(word) => self.word("spectrum.target", &word, &TARGETS.map(|target| (target.name(), target)))?,
             None => Target::Eigenvalues,
         };
         let modes = match raw.modes {
@@ -206,7 +212,7 @@ impl Lines<'_> {
         }
     }
 
-    fn design(&self, raw: raw::Design, inputs: usize) -> Result<DesignSettings, StudyError> {
+    fn design(&self, raw: raw::Design, target: Target, inputs: usize) -> Result<DesignSettings, StudyError> {
         let kind = match raw.kind {
             Some(word) => self.word("design.kind", &word, &[("nested-lhs", DesignKind::NestedLhs)])?,
             None => DesignKind::NestedLhs,
@@ -216,10 +222,11 @@ impl Lines<'_> {
             None => Ok(default),
         };
         let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
+        let level = defaults::level(target, inputs);
         let initial_was_given = raw.initial.is_some();
-        let maximum = size("design.maximum", raw.maximum, 2, defaults::MAXIMUM)?;
-        let initial = size("design.initial", raw.initial, 2, defaults::initial(inputs).min(maximum))?;
-        let step = size("design.step", raw.step, 1, defaults::step(inputs))?;
+        let maximum = size("design.maximum", raw.maximum, 2, defaults::maximum(target))?;
+        let initial = size("design.initial", raw.initial, 2, level.min(maximum))?;
+        let step = size("design.step", raw.step, 1, level)?;
         match maximum_place {
             Some(place) if initial_was_given && initial > maximum => Err(StudyError::OutOfRange {
                 place,
@@ -230,35 +237,58 @@ impl Lines<'_> {
         }
     }
 
-    fn fit(&self, raw: raw::Fit) -> Result<Stepwise, StudyError> {
-        if let Some(word) = &raw.method {
-            self.word("fit.method", word, &[(FitMethod::Stepwise.name(), ())])?;
-        }
+    fn fit(&self, raw: raw::Fit, target: Target) -> Result<FitSettings, StudyError> {
+        let share = |value: f64| value > 0.0 && value <= 1.0;
+        let in_share = "a number above 0 and at most 1";
         let max_degree = match raw.max_degree {
             Some(value) => self.integer("fit.max_degree", value, 1..=HIGHEST_DEGREE)? as u16,
             None => defaults::MAX_DEGREE,
         };
+        let s2_target = self.number("fit.s2_target", raw.s2_target, defaults::S2_TARGET, in_share, share)?;
+        let proportion_tolerance = match raw.proportion_tolerance {
+            Some(value) => Some(self.number("fit.proportion_tolerance", Some(value), 1.0, in_share, share)?),
+            None => (target == Target::Invariants).then_some(defaults::PROPORTION_TOLERANCE),
+        };
+        let smooth = Smooth { max_degree, s2_target };
+        let by_name = [("stepwise", None), ("auto", Some(0)), ("minimum-norm", Some(1)), ("omp", Some(2))];
+        let method = match &raw.method {
+            Some(word) => self.word("fit.method", word, &by_name)?,
+            None => (target == Target::Invariants).then_some(0),
+        };
+        let (norm, forward, backward) = (raw.q_norm, raw.epsilon_forward, raw.epsilon_backward);
+        let method = match method {
+            None => FitMethod::Stepwise(self.stepwise(max_degree, s2_target, norm, forward, backward)?),
+            Some(smooth_method) => {
+                let keys = ["fit.q_norm", "fit.epsilon_forward", "fit.epsilon_backward"];
+                for (key, value) in keys.into_iter().zip([norm, forward, backward]) {
+                    if let Some(value) = value {
+                        return Err(StudyError::KeyOfStepwise { place: self.place(key, &value) });
+                    }
+                }
+                [FitMethod::Auto, FitMethod::MinimumNorm, FitMethod::Omp][smooth_method](smooth)
+            }
+        };
+        Ok(FitSettings { method, proportion_tolerance })
+    }
+
+    fn stepwise(
+        &self,
+        max_degree: u16,
+        s2_target: f64,
+        q_norm: Option<Spanned<f64>>,
+        forward: Option<Spanned<f64>>,
+        backward: Option<Spanned<f64>>,
+    ) -> Result<Stepwise, StudyError> {
         let share = |value: f64| value > 0.0 && value <= 1.0;
         let cutoff = |value: f64| (0.0..1.0).contains(&value);
         let (in_share, in_cutoff) = ("a number above 0 and at most 1", "a number from 0 to below 1");
+        let epsilon = |key, value, default| self.number(key, value, default, in_cutoff, cutoff);
         Ok(Stepwise {
             max_degree,
-            q_norm: self.number("fit.q_norm", raw.q_norm, defaults::Q_NORM, in_share, share)?,
-            s2_target: self.number("fit.s2_target", raw.s2_target, defaults::S2_TARGET, in_share, share)?,
-            epsilon_forward: self.number(
-                "fit.epsilon_forward",
-                raw.epsilon_forward,
-                defaults::EPSILON_FORWARD,
-                in_cutoff,
-                cutoff,
-            )?,
-            epsilon_backward: self.number(
-                "fit.epsilon_backward",
-                raw.epsilon_backward,
-                defaults::EPSILON_BACKWARD,
-                in_cutoff,
-                cutoff,
-            )?,
+            s2_target,
+            q_norm: self.number("fit.q_norm", q_norm, defaults::Q_NORM, in_share, share)?,
+            epsilon_forward: epsilon("fit.epsilon_forward", forward, defaults::EPSILON_FORWARD)?,
+            epsilon_backward: epsilon("fit.epsilon_backward", backward, defaults::EPSILON_BACKWARD)?,
         })
     }
 }

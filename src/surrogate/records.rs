@@ -134,6 +134,20 @@ pub struct Decision {
     pub proportion_error: Option<f64>,
 }
 
+impl Decision {
+    /// Probability with which max Re λ of the model minus its prediction lies between the shifts of the band.
+    pub const BAND_LEVEL: f64 = 0.95;
+
+    /// The quantiles of the residuals of max Re λ, in 1/s, that hold [`Decision::BAND_LEVEL`] between them; zero if they are
+    /// undetermined.
+    pub fn band_shifts(&self) -> [f64; 2] {
+        [0.5 - 0.5 * Self::BAND_LEVEL, 0.5 + 0.5 * Self::BAND_LEVEL].map(|level| {
+            let same = |quantile: &&Quantile| (quantile.level - level).abs() < 1e-9;
+            self.max_re_residuals.iter().find(same).map_or(0.0, |quantile| quantile.value)
+        })
+    }
+}
+
 /// A quantile of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantile {

@@ -1,0 +1,122 @@
+//! The study's fitting method on all components of a design.
+
+use crate::design::Samples;
+use crate::fit::auto::{self, Memory};
+use crate::fit::omp::{self, Candidates};
+use crate::fit::stepwise::{self, Outcome};
+use crate::fit::{Fitted, minimum_norm};
+use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
+use crate::parallel::try_map;
+use crate::polynomial::Recurrence;
+use crate::progress::{Interrupted, Observer};
+use crate::regression::{BasisTables, Response};
+use crate::spectrum::Output;
+use crate::study::{FitMethod, Study};
+
+/// A fitted component and the name of the method that fitted it.
+pub(super) struct ComponentResult {
+    pub result: Fitted,
+    pub solver: &'static str,
+}
+
+/// The method with what it has learnt of each component on smaller designs.
+pub(super) struct ComponentFit<'a> {
+    study: &'a Study,
+    recurrences: Vec<Recurrence>,
+    candidates: MethodCandidates,
+    memories: Vec<Memory>,
+}
+
+/// Candidate terms as the method takes them.
+enum MethodCandidates {
+    Shells(Vec<Vec<MultiIndex>>),
+    Norms(Candidates),
+    None,
+}
+
+impl<'a> ComponentFit<'a> {
+    pub fn new(study: &'a Study) -> Result<Self, IndexSetError> {
+        let inputs = study.inputs.dimension();
+        let degree = usize::from(study.fit.method.max_degree());
+        let candidates = match &study.fit.method {
+            FitMethod::Stepwise(settings) => {
+                let hyperbolic = Hyperbolic { inputs, q_norm: settings.q_norm };
+                MethodCandidates::Shells(hyperbolic.shells(settings.max_degree)?)
+            }
+            FitMethod::Omp(settings) | FitMethod::Auto(settings) => {
+                MethodCandidates::Norms(Candidates::new(inputs, settings.max_degree, study.design.maximum)?)
+            }
+            FitMethod::MinimumNorm(_) => MethodCandidates::None,
+        };
+        let recurrences =
+            study.inputs.inputs().iter().map(|input| input.marginal.family().recurrence(degree)).collect();
+        Ok(Self { study, recurrences, candidates, memories: Vec::new() })
+    }
+
+    /// Starts anew, because the components are now those of `outputs`.
+    pub fn forget(&mut self, outputs: &[Output]) {
+        let count = outputs.iter().map(|output| output.components.len()).sum();
+        self.memories = vec![Memory::new(self.study.inputs.dimension()); count];
+    }
+
+    /// Fits `values`, a list per component with one value per point of `samples`. `None` if the method asks for a larger
+    /// design, as long as the design `can_grow`; else each component settles for what the design carries.
+    pub fn fit(
+        &mut self,
+        samples: &Samples,
+        values: &[Vec<f64>],
+        resolutions: &[f64],
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<Vec<ComponentResult>>, Interrupted> {
+        let degree = usize::from(self.study.fit.method.max_degree());
+        let tables = BasisTables::new(samples, &self.recurrences, degree);
+        observer.begin("fitting components", values.len() as u64);
+        let found = try_map(values.len(), |id| {
+            let response = Response { values: &values[id], resolution: resolutions[id] };
+            let found = self.component(&tables, response, &self.memories[id], can_grow, observer);
+            observer.advance(1);
+            found
+        });
+        observer.finish();
+        let found: Option<Vec<_>> = found?.into_iter().collect();
+        let Some(found) = found else { return Ok(None) };
+        let (results, memories) = found.into_iter().unzip();
+        self.memories = memories;
+        Ok(Some(results))
+    }
+
+    fn component(
+        &self,
+        tables: &BasisTables,
+        response: Response<'_>,
+        memory: &Memory,
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<(ComponentResult, Memory)>, Interrupted> {
+        let (result, solver, memory) = match (&self.study.fit.method, &self.candidates) {
+            (FitMethod::Auto(settings), MethodCandidates::Norms(candidates)) => {
+                auto::fit(tables, response, candidates, settings, memory, observer)?
+            }
+            (FitMethod::Omp(settings), MethodCandidates::Norms(candidates)) => {
+                (omp::fit(tables, response, candidates, settings, observer)?, "omp", memory.clone())
+            }
+            (FitMethod::Stepwise(settings), MethodCandidates::Shells(shells)) => {
+                let result = match stepwise::fit(tables, response, shells, settings, observer)? {
+                    Outcome::Fitted(fitted) => fitted,
+                    Outcome::TooFewSamples { .. } if can_grow => return Ok(None),
+                    Outcome::TooFewSamples { indices, degree } => {
+                        stepwise::settle(tables, response, &indices, degree, observer)?
+                    }
+                };
+                (result, "stepwise", memory.clone())
+            }
+            (method, _) => {
+                let settings = crate::study::Smooth { max_degree: method.max_degree(), s2_target: method.s2_target() };
+                let (result, prior) = minimum_norm::fit(tables, response, &settings, &memory.prior, observer)?;
+                (result, "minimum-norm", Memory { prior, ..*memory })
+            }
+        };
+        Ok(Some((ComponentResult { result, solver }, memory)))
+    }
+}

@@ -1,0 +1,302 @@
+//! Orthogonal matching pursuit: terms join one at a time, cross-validation says how many.
+//!
+//! Pati, Rezaiifar and Krishnaprasad (1993), <https://doi.org/10.1109/ACSSC.1993.342465>, in the form that judges a
+//! candidate by the part of it that is orthogonal to the terms before it (orthogonal least squares; Chen, Billings and
+//! Luo 1989, <https://doi.org/10.1080/00207178908953472>).
+//!
+//! On a set of candidates, each step adds the one that lowers the residual most. How many steps N runs can carry is found
+//! by ten-fold cross-validation of the *whole path*, selection included. The leave-one-out error of the selected terms, even
+//! corrected for small designs, does not see that they were selected: it falls to rounding as the path nears N terms
+//! while the true error rises again.
+//!
+//! Candidate sets {‖α‖_q ≤ p} grow degree by degree for each norm q until degrees bring nothing more or candidates
+//! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
+
+use super::{BlindResiduals, Fitted, Stop};
+use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
+use crate::progress::{Interrupted, Observer};
+use crate::regression::{ActiveBasis, BasisTables, Response};
+use crate::study::Smooth;
+use nalgebra::{DMatrix, DVector};
+
+/// Parts of the design that are left out in turn.
+const FOLDS: usize = 10;
+
+/// Norms q tried, from those that favour single inputs to all interactions.
+const Q_NORMS: [f64; 3] = [0.5, 0.75, 1.0];
+
+/// Degrees in a row without improvement after which a norm is given up.
+const PATIENCE: usize = 1;
+
+/// Candidates per run beyond which a set is not tried: among too many, some fit by chance.
+const CANDIDATES_PER_RUN: usize = 5;
+
+/// So many candidates are always tried: they cost nothing.
+const FEW_CANDIDATES: usize = 100;
+
+/// A path ends so many terms after its best one, as a share of that, and at least.
+const STALL_SHARE: f64 = 0.3;
+const LEAST_STALL: usize = 6;
+
+/// Least share of its squared length by which a candidate must differ from the terms before it.
+const INDEPENDENT: f64 = 1e-10;
+
+/// Mean square error relative to the variance at which nothing but rounding is left to explain.
+const EXACT: f64 = 1e-26;
+
+/// The candidates of every norm, degree by degree.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidates {
+    /// Per norm, the sets {α : p − 1 < ‖α‖_q ≤ p} for p = 0, 1, ….
+    norms: Vec<Vec<Vec<MultiIndex>>>,
+}
+
+impl Candidates {
+    /// The candidates for `inputs` variables that up to `largest_design` runs could use, of degree up to `max_degree`.
+    ///
+    /// # Errors
+    ///
+    /// [`IndexSetError`] if even degree 1 is too much.
+    pub fn new(inputs: usize, max_degree: u16, largest_design: usize) -> Result<Self, IndexSetError> {
+        let most = most_candidates(largest_design);
+        let shells = |&q_norm: &f64| {
+            let hyperbolic = Hyperbolic { inputs, q_norm };
+            let mut shells = hyperbolic.shells(1)?;
+            for degree in 2..=max_degree {
+                match hyperbolic.shells(degree) {
+                    Ok(larger) if larger.iter().map(Vec::len).sum::<usize>() <= most => shells = larger,
+                    _ => break,
+                }
+            }
+            Ok(shells)
+        };
+        Ok(Self { norms: Q_NORMS.iter().map(shells).collect::<Result<_, _>>()? })
+    }
+}
+
+fn most_candidates(runs: usize) -> usize {
+    FEW_CANDIDATES.max(CANDIDATES_PER_RUN.saturating_mul(runs))
+}
+
+/// Fits one component: `response.values[i]` belongs to point i of `tables`.
+///
+/// The leave-one-out residuals of the result are those of the folds: each point is predicted by a path that never saw it.
+///
+/// # Errors
+///
+/// [`Interrupted`] soon after the observer asks to stop.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::design::NestedLatinHypercube;
+/// use pcc::fit::omp::{Candidates, fit};
+/// use pcc::polynomial::Family;
+/// use pcc::progress::Silent;
+/// use pcc::regression::{BasisTables, Response};
+/// use pcc::study::Smooth;
+///
+/// let mut design = NestedLatinHypercube::new(3, 1);
+/// design.grow_to(40);
+/// let samples = design.samples(|_, u| 2.0 * u - 1.0);
+/// let values: Vec<f64> = samples.points().map(|x| 1.0 + x[0] - 2.0 * x[1] * x[2]).collect();
+/// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(8); 3], 8);
+/// let response = Response { values: &values, resolution: 1e-13 };
+/// let fitted = fit(&tables, response, &Candidates::new(3, 8, 40)?, &Smooth { max_degree: 8, s2_target: 0.999 }, &Silent)?;
+/// assert_eq!(fitted.indices.len(), 3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn fit(
+    tables: &BasisTables,
+    response: Response<'_>,
+    candidates: &Candidates,
+    settings: &Smooth,
+    observer: &dyn Observer,
+) -> Result<Fitted, Interrupted> {
+    let inputs = candidates.norms[0][0][0].len();
+    let Some(variance) = response.variance() else {
+        return Ok(Fitted::constant(inputs, response.values));
+    };
+    let mut best: Option<(CrossValidation, Vec<MultiIndex>)> = None;
+    for shells in &candidates.norms {
+        let (mut set, mut best_of_norm, mut stalled) = (shells[0].clone(), f64::INFINITY, 0);
+        for shell in &shells[1..] {
+            set.extend_from_slice(shell);
+            if set.len() > most_candidates(response.values.len()) || stalled > PATIENCE {
+                break;
+            }
+            let validation = CrossValidation::new(&tables.columns(&set), response.values, observer)?;
+            stalled = if validation.error < best_of_norm { 0 } else { stalled + 1 };
+            best_of_norm = best_of_norm.min(validation.error);
+            if best.as_ref().is_none_or(|(known, _)| validation.error < known.error) {
+                best = Some((validation, set.clone()));
+            }
+            if best_of_norm <= EXACT * variance {
+                break;
+            }
+        }
+    }
+    let Some((validation, set)) = best else { return Ok(Fitted::constant(inputs, response.values)) };
+    let columns = tables.columns(&set);
+    let mut path = Path::new(&columns, response.values);
+    while path.terms.len() < validation.terms && path.step().is_some() {}
+    let terms = path.terms.iter().map(|&k| set[k].clone()).filter(|alpha| !alpha.is_constant()).collect();
+    let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?;
+    basis.extend(terms)?;
+    let degree = basis.indices().iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
+    let mut fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    let s2 = 1.0 - validation.error / variance;
+    fitted.errors = fitted.errors.map(|errors| crate::regression::ErrorMeasures { s2: Some(s2), ..errors });
+    fitted.stop = if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted };
+    fitted.blind_residuals = Some(BlindResiduals { first: 0, values: validation.residuals.clone() });
+    fitted.leave_one_out_residuals = Some(validation.residuals);
+    Ok(fitted)
+}
+
+/// What cross-validation says of the paths on one set of candidates.
+struct CrossValidation {
+    /// The number of terms with the smallest error.
+    terms: usize,
+    /// Mean square of the residuals.
+    error: f64,
+    /// What paths of so many terms miss at the points they did not see.
+    residuals: Vec<f64>,
+}
+
+impl CrossValidation {
+    fn new(columns: &DMatrix<f64>, values: &[f64], observer: &dyn Observer) -> Result<Self, Interrupted> {
+        let folds = FOLDS.min(values.len());
+        let mut by_fold = Vec::with_capacity(folds);
+        for fold in 0..folds {
+            observer.check()?;
+            by_fold.push(left_out(columns, values, fold, folds));
+        }
+        let longest = by_fold.iter().map(Vec::len).min().unwrap_or(0);
+        let error = |terms: usize| -> f64 {
+            by_fold.iter().map(|path| path[terms - 1].norm_squared()).sum::<f64>() / values.len() as f64
+        };
+        let (terms, error) =
+            (1..=longest).map(|terms| (terms, error(terms))).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((1, f64::MAX));
+        let mut residuals = vec![0.0; values.len()];
+        for (fold, path) in by_fold.iter().enumerate().filter(|_| longest > 0) {
+            let points = (fold..values.len()).step_by(folds);
+            points.zip(path[terms - 1].iter()).for_each(|(i, &residual)| residuals[i] = residual);
+        }
+        Ok(Self { terms, error, residuals })
+    }
+}
+
+/// The residuals at the points of one fold after each term of the path on the others.
+fn left_out(columns: &DMatrix<f64>, values: &[f64], fold: usize, folds: usize) -> Vec<DVector<f64>> {
+    let (inside, outside): (Vec<usize>, Vec<usize>) = (0..values.len()).partition(|i| i % folds == fold);
+    let (seen, unseen) = (columns.select_rows(&outside), columns.select_rows(&inside));
+    let seen_values: Vec<f64> = outside.iter().map(|&i| values[i]).collect();
+    let mut residual = DVector::from_iterator(inside.len(), inside.iter().map(|&i| values[i]));
+    let mut path = Path::new(&seen, &seen_values);
+    let mut continued: Vec<DVector<f64>> = Vec::new();
+    let mut history: Vec<DVector<f64>> = Vec::new();
+    let mut best = (0, f64::INFINITY);
+    while history.len() < best.0 + LEAST_STALL.max((STALL_SHARE * best.0 as f64) as usize) {
+        let Some(step) = path.step() else { break };
+        // The new orthonormal column, continued to the points of the fold.
+        let mut column = unseen.column(step.candidate).into_owned();
+        for (known, coefficient) in continued.iter().zip(&step.coefficients) {
+            column.axpy(-coefficient, known, 1.0);
+        }
+        column /= step.length;
+        residual.axpy(-step.part, &column, 1.0);
+        continued.push(column);
+        history.push(residual.clone());
+        if residual.norm_squared() < best.1 {
+            best = (history.len(), residual.norm_squared());
+        }
+    }
+    history
+}
+
+/// A path: the terms so far, their orthonormal columns, and what the next step needs of every candidate.
+struct Path<'a> {
+    columns: &'a DMatrix<f64>,
+    terms: Vec<usize>,
+    orthonormal: Vec<DVector<f64>>,
+    residual: DVector<f64>,
+    /// ψᵀe.
+    products: DVector<f64>,
+    /// Squared length of the part orthogonal to the terms, and of the whole.
+    lengths: DVector<f64>,
+    whole_lengths: DVector<f64>,
+}
+
+/// The term that joined in a step.
+struct Step {
+    candidate: usize,
+    /// Its products with the orthonormal columns before it.
+    coefficients: Vec<f64>,
+    /// Length of the rest.
+    length: f64,
+    /// Product of the new orthonormal column with the residual.
+    part: f64,
+}
+
+impl<'a> Path<'a> {
+    fn new(columns: &'a DMatrix<f64>, values: &[f64]) -> Self {
+        let residual = DVector::from_column_slice(values);
+        let lengths = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm_squared()));
+        Self {
+            columns,
+            terms: Vec::new(),
+            orthonormal: Vec::new(),
+            products: columns.tr_mul(&residual),
+            residual,
+            whole_lengths: lengths.clone(),
+            lengths,
+        }
+    }
+
+    /// The constant first, then the candidate that would lower the residual most.
+    fn best_candidate(&self) -> Option<usize> {
+        if self.terms.is_empty() {
+            return Some(0);
+        }
+        let mut best = (0.0, None);
+        for candidate in 0..self.columns.ncols() {
+            if self.lengths[candidate] > INDEPENDENT * self.whole_lengths[candidate] {
+                let gain = self.products[candidate] * self.products[candidate] / self.lengths[candidate];
+                if gain > best.0 {
+                    best = (gain, Some(candidate));
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Lets the best candidate join; `None` if there is none or as many terms as points.
+    fn step(&mut self) -> Option<Step> {
+        if self.terms.len() + 1 >= self.residual.len() {
+            return None;
+        }
+        let candidate = self.best_candidate()?;
+        let mut rest = self.columns.column(candidate).into_owned();
+        let mut coefficients = vec![0.0; self.orthonormal.len()];
+        for _ in 0..2 {
+            for (coefficient, known) in coefficients.iter_mut().zip(&self.orthonormal) {
+                let part = known.dot(&rest);
+                rest.axpy(-part, known, 1.0);
+                *coefficient += part;
+            }
+        }
+        let length = rest.norm();
+        rest /= length;
+        let part = rest.dot(&self.residual);
+        self.residual.axpy(-part, &rest, 1.0);
+        let projections = self.columns.tr_mul(&rest);
+        self.products.axpy(-part, &projections, 1.0);
+        for (left, projection) in self.lengths.iter_mut().zip(projections.iter()) {
+            *left -= projection * projection;
+        }
+        self.lengths[candidate] = 0.0;
+        self.orthonormal.push(rest);
+        self.terms.push(candidate);
+        Some(Step { candidate, coefficients, length, part })
+    }
+}
