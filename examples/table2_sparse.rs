@@ -6,7 +6,7 @@
 
 use pcc::progress::Silent;
 use pcc::reference::compare;
-use pcc::study::Study;
+use pcc::study::{FitMethod, Study};
 use std::time::Instant;
 
 /// Inputs, most direct computations and largest error of the proportion in percent that the paper reports.
@@ -30,16 +30,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let path = format!("{}/surrogates/clutch-r{inputs}-eigenvalues.toml", env!("CARGO_MANIFEST_DIR"));
         let mut study = Study::from_toml(&std::fs::read_to_string(path)?)?;
+        let FitMethod::Stepwise(fit) = &mut study.fit.method else { return Err("not the paper's method".into()) };
         for (key, value) in &overrides {
             match key.as_str() {
                 "initial" => study.design.initial = *value as usize * inputs,
                 "initial_r2" => study.design.initial = *value as usize * inputs * inputs,
                 "step" => study.design.step = *value as usize * inputs,
-                "q_norm" => study.fit.q_norm = *value,
-                "epsilon_forward" => study.fit.epsilon_forward = *value,
-                "epsilon_backward" => study.fit.epsilon_backward = *value,
-                "max_degree" => study.fit.max_degree = *value as u16,
-                "s2_target" => study.fit.s2_target = *value,
+                "q_norm" => fit.q_norm = *value,
+                "epsilon_forward" => fit.epsilon_forward = *value,
+                "epsilon_backward" => fit.epsilon_backward = *value,
+                "max_degree" => fit.max_degree = *value as u16,
+                "s2_target" => fit.s2_target = *value,
                 "inputs" => {}
                 _ => return Err(format!("unknown key {key}").into()),
             }

@@ -45,7 +45,7 @@ pub(super) enum Command {
     /// and coefficients. The same study gives the same bytes on any number of threads.
     Build(Build),
 
-    /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices
+    /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices, critical values
     ///
     /// Needs the surrogate file only. With --points it evaluates the points of a CSV file instead, whose columns are named
     /// like the inputs, in physical units; other columns are ignored.
@@ -63,6 +63,13 @@ pub(super) enum Command {
     /// Errors of the stability proportion, of means and variances, and the share of points on whose stability the two
     /// disagree. Refuses a study that asks another question than the surrogate answers.
     Compare(Compare),
+
+    /// Bound the true stability proportion by fresh model runs
+    ///
+    /// Runs the model at points that neither the build nor any evaluation has used, counts where surrogate and model
+    /// disagree, and bounds the model's proportion from that: it holds however wrong the surrogate is, and is narrow where
+    /// it is right. The certificate is added to the surrogate file, beside any earlier one.
+    Certify(Certify),
 
     /// Show what is inside a surrogate file
     Inspect(Inspect),
@@ -154,6 +161,10 @@ pub(super) struct Eval {
 
     #[command(flatten)]
     pub sampling: Sampling,
+
+    /// Also show where the system loses stability: the smallest value of INPUT, given the other inputs
+    #[arg(long, value_name = "INPUT", conflicts_with = "points")]
+    pub critical: Option<String>,
 }
 
 #[derive(Debug, Args)]
@@ -185,6 +196,32 @@ pub(super) struct Compare {
     /// Exit with code 1 if the relative error of the stability proportion is larger
     #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
     pub max_error: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Certify {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Study it was built from
+    #[arg(long, value_name = "STUDY")]
+    pub study: PathBuf,
+
+    /// Number of fresh model runs
+    #[arg(short = 'm', long, value_name = "M", value_parser = sample_count, allow_negative_numbers = true)]
+    pub runs: u64,
+
+    /// Seed of the fresh points; a seed the file has a certificate for is refused
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
+    /// File for the surrogate with its new certificate [default: the surrogate file itself]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Certify against a study that asks another question than the surrogate was built for
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -81,6 +81,7 @@ fn run(arguments: Arguments) -> anyhow::Result<Ending> {
         Command::Eval(options) => commands::eval(&context, &options),
         Command::Reference(options) => commands::reference(&context, &options),
         Command::Compare(options) => commands::compare(&context, &options),
+        Command::Certify(options) => commands::certify(&context, &options),
         Command::Inspect(options) => commands::inspect(&context, &options),
         Command::Convert(options) => commands::convert(&context, &options),
         Command::Completions { shell } => commands::completions(shell),

@@ -155,8 +155,11 @@ fn quadratic(c_1: Complex<f64>, c_0: Complex<f64>) -> [Complex<f64>; 2] {
 }
 
 /// The square root with a real part that is not negative, without the polar form and its rounding.
-fn square_root(z: Complex<f64>) -> Complex<f64> {
-    let larger_part = (0.5 * (z.norm() + z.re.abs())).sqrt();
+#[inline]
+pub fn square_root(z: Complex<f64>) -> Complex<f64> {
+    let square = z.norm_sqr();
+    let modulus = if square > SAFE_SQUARE && square < f64::INFINITY { square.sqrt() } else { z.norm() };
+    let larger_part = (0.5 * (modulus + z.re.abs())).sqrt();
     if larger_part == 0.0 {
         return ZERO;
     }

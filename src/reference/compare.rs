@@ -100,10 +100,7 @@ pub fn compare(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Comparison, ReferenceError> {
-    let other_problem = || ReferenceError::OtherProblem {
-        surrogate: surrogate.provenance.problem_hash.clone(),
-        study: study.problem_hash(),
-    };
+    let other_problem = || ReferenceError::other_problem(surrogate, study);
     if surrogate.provenance.problem_hash != study.problem_hash() || surrogate.inputs != study.inputs {
         return Err(other_problem());
     }

@@ -1,7 +1,9 @@
-//! Direct computations on many points: the paper's MCIM, and surrogates judged against it.
+//! Direct computations on many points: the paper's MCIM, and surrogates judged and certified against it.
 
+mod certify;
 mod compare;
 mod monte_carlo;
 
+pub use certify::certify;
 pub use compare::{Comparison, ComponentError, compare};
 pub use monte_carlo::{Reference, ReferenceError, monte_carlo};

@@ -1,12 +1,14 @@
 //! Monte Carlo on the initial model.
 
 use crate::design::{Run, RunError, Runner};
+use crate::eval::EvalError;
 use crate::input::random_point;
 use crate::model::ModelError;
 use crate::progress::Observer;
 use crate::random::Purpose;
 use crate::spectrum::{Block, Output, SpectrumError, Summary, Target};
 use crate::study::Study;
+use crate::surrogate::Surrogate;
 use thiserror::Error;
 
 /// Samples summarised together, in the order of their numbers.
@@ -43,6 +45,9 @@ pub enum ReferenceError {
         /// Why.
         cause: SpectrumError,
     },
+    /// The surrogate could not be sampled.
+    #[error(transparent)]
+    Surrogate(EvalError),
     /// The surrogate has no finite value at a point.
     #[error("the surrogate's value at {point} is not a finite number; the file is of no use there")]
     NotFinite {
@@ -52,6 +57,11 @@ pub enum ReferenceError {
 }
 
 impl ReferenceError {
+    /// The refusal of a study that asks another question than the surrogate answers.
+    pub(super) fn other_problem(surrogate: &Surrogate, study: &Study) -> Self {
+        Self::OtherProblem { surrogate: surrogate.provenance.problem_hash.clone(), study: study.problem_hash() }
+    }
+
     /// Whether the user asked to stop.
     pub fn is_interruption(&self) -> bool {
         matches!(self, Self::Run(RunError::Interrupted(_)))
@@ -80,12 +90,22 @@ pub(super) fn for_each_chunk(
                 point
             })
             .collect();
-        let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
-        let runs = runner.run(&physical, observer)?;
+        let runs = run_points(study, &mut runner, &standardized, observer)?;
         consume(&runner, &standardized, &runs)?;
     }
     observer.finish();
     Ok(())
+}
+
+/// Direct computations at standardized points.
+pub(super) fn run_points(
+    study: &Study,
+    runner: &mut Runner<'_>,
+    standardized: &[Vec<f64>],
+    observer: &dyn Observer,
+) -> Result<Vec<Run>, ReferenceError> {
+    let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
+    Ok(runner.run(&physical, observer)?)
 }
 
 /// What direct computations say.

@@ -1,6 +1,9 @@
 //! The answer of `eval` and `reference`: stability and what engineers read of each mode.
 
 use super::build::FitReport;
+use super::sensitivity::{CriticalReport, SensitivityReport};
+use super::sureness::Sureness;
+use crate::eval::{CriticalValues, Sensitivities};
 use super::table::{Align, Table, count, significant};
 use crate::spectrum::{ModeSummary, Output, Summary};
 use crate::statistics::{Interval, Moments};
@@ -24,14 +27,19 @@ pub struct EvalReport {
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
-    /// Wilson interval of the share: what the finite number of samples leaves open.
-    pub interval: Interval,
+    /// How sure that is.
+    #[serde(flatten)]
+    pub sureness: Sureness,
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Statistics,
     /// What engineers read, per mode.
     pub modes: Vec<ModeReport>,
     /// Every component.
     pub components: Vec<ComponentReport>,
+    /// Sobol' indices of what decides stability; absent for a model.
+    pub sensitivity: Option<SensitivityReport>,
+    /// The critical value of an input, if asked for.
+    pub critical: Option<CriticalReport>,
     /// What to know before trusting a surrogate.
     pub warnings: Vec<String>,
     /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file; empty for a model.
@@ -112,21 +120,39 @@ pub struct QuantileReport {
     pub value: f64,
 }
 
+/// Components side by side in a table of Sobol' indices: what fits a terminal.
+const SOBOL_COLUMNS: usize = 4;
+
 /// Confidence level of the printed intervals.
 const LEVEL: f64 = 0.95;
 
 impl EvalReport {
     /// The report of a surrogate's samples.
-    pub fn of_surrogate(surrogate: &Surrogate, summary: &Summary, seed: u64, elapsed_seconds: f64) -> Self {
+    pub fn of_surrogate(
+        surrogate: &Surrogate,
+        summary: &Summary,
+        indices: &Sensitivities,
+        seed: u64,
+        elapsed_seconds: f64,
+    ) -> Self {
         let name = &surrogate.provenance.study_name;
         let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, seed, elapsed_seconds);
         for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
             component.analysis = Some(analysis);
         }
+        let stable = summary.stable_proportion();
+        report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, report.sureness.interval);
+        report.sensitivity = Some(SensitivityReport::new(surrogate.inputs.names(), indices));
         report.warnings = FitReport::warnings(&FitReport::of(surrogate));
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
         report
+    }
+
+    /// Adds the distribution of the critical value of an input.
+    pub fn add_critical_values(&mut self, surrogate: &Surrogate, input: usize, found: &CriticalValues) {
+        let name = surrogate.inputs.names().nth(input).unwrap_or_default();
+        self.critical = Some(CriticalReport::new(name, found));
     }
 
     /// The report of direct computations.
@@ -153,7 +179,13 @@ impl EvalReport {
             seed,
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
-            interval: stable.wilson(LEVEL),
+            sureness: Sureness {
+                interval: stable.wilson(LEVEL),
+                samples: stable.samples,
+                surrogate_band: None,
+                estimated_error_percent: None,
+                verified_bound: None,
+            },
             max_re: Statistics::of(&summary.max_re, 1.0),
             modes: ranks.zip(&summary.modes).map(|(mode, part)| mode_report(mode, part, stable.samples)).collect(),
             components: names
@@ -165,6 +197,8 @@ impl EvalReport {
                     analysis: None,
                 })
                 .collect(),
+            sensitivity: None,
+            critical: None,
             warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
@@ -235,20 +269,20 @@ impl fmt::Display for EvalReport {
             self.seed
         )?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-        let Interval { lower, upper, level } = self.interval;
         let modes: Vec<String> = self.modes.iter().map(|mode| mode.mode.to_string()).collect();
         let judged_by = match self.source {
             "model" => "all modes".to_owned(),
-            _ => format!("modes {} alone", modes.join(", ")),
+            _ => format!("modes {}", modes.join(", ")),
         };
         writeln!(f, "  stable                 {}   judged by {judged_by}", percent(self.stable_proportion))?;
-        writeln!(
-            f,
-            "  {:.0} % interval          {} to {}   from sampling alone",
-            100.0 * level,
-            percent(lower),
-            percent(upper)
-        )?;
+        match self.source {
+            "model" => {
+                let Interval { lower, upper, level } = self.sureness.interval;
+                let range = format!("{} to {}", percent(lower), percent(upper));
+                writeln!(f, "  sampling interval      {range}   {:.0} %", 100.0 * level)?;
+            }
+            _ => write!(f, "{}", self.sureness)?,
+        }
         writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
         if let Some((low, high)) = self.central_residuals() {
             let [low, high] = [low, high].map(|value| significant(value, 3));
@@ -260,9 +294,15 @@ impl fmt::Display for EvalReport {
         writeln!(f, "\n{}", self.mode_table())?;
         write!(f, "{}", self.component_table())?;
         writeln!(f, "re in 1/s, im in rad/s")?;
+        if let Some(sensitivity) = &self.sensitivity {
+            write!(f, "{sensitivity}")?;
+        }
         let sobol = self.sobol_table();
         if !sobol.is_empty() {
             write!(f, "\n{sobol}")?;
+        }
+        if let Some(critical) = &self.critical {
+            write!(f, "{critical}")?;
         }
         self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
     }
@@ -335,16 +375,22 @@ impl EvalReport {
             .filter_map(|component| Some((component.name.as_str(), component.analysis.as_ref()?.sobol.as_slice())))
             .filter(|(_, sobol)| !sobol.is_empty())
             .collect();
-        let Some((_, first)) = shown.first() else { return String::new() };
-        let mut columns = vec![("Sobol' index", Align::Left)];
-        columns.extend(shown.iter().map(|(name, _)| (*name, Align::Right)));
-        let mut table = Table::new(&columns);
-        for (j, input) in first.iter().enumerate() {
-            let mut row = vec![input.input.clone()];
-            row.extend(shown.iter().map(|(_, sobol)| format!("{:.4} / {:.4}", sobol[j].first, sobol[j].total)));
-            table.row(row);
+        if shown.is_empty() {
+            return String::new();
         }
-        let mut text = table.to_string();
+        let mut text = String::new();
+        for part in shown.chunks(SOBOL_COLUMNS) {
+            let mut columns = vec![("Sobol' index", Align::Left)];
+            columns.extend(part.iter().map(|(name, _)| (*name, Align::Right)));
+            let mut table = Table::new(&columns);
+            for (j, input) in part[0].1.iter().enumerate() {
+                let mut row = vec![input.input.clone()];
+                row.extend(part.iter().map(|(_, sobol)| format!("{:.4} / {:.4}", sobol[j].first, sobol[j].total)));
+                table.row(row);
+            }
+            let _ = writeln!(text, "{table}");
+        }
+        text.pop();
         let _ = writeln!(
             text,
             "first order / total: the share of a component's variance that an input causes alone / in all"

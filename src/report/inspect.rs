@@ -1,11 +1,12 @@
 //! What is inside a surrogate file.
 
 use super::build::FitReport;
+use super::certify::CertificateReport;
 use super::table::{Align, Table, count, significant};
 use crate::artifact::{Artifact, Format};
 use crate::eval::{Plan, self_test_difference};
 use crate::input::Marginal;
-use crate::surrogate::{Certificate, Setting, SettingValue};
+use crate::surrogate::{Setting, SettingValue};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -57,11 +58,13 @@ pub struct InspectReport {
     pub warnings: Vec<String>,
     /// Terms after merging all components, and operations per evaluation.
     pub plan: PlanReport,
+    /// Estimated relative error of the stability proportion, in percent; null if unknown.
+    pub estimated_error_percent: Option<f64>,
     /// Largest relative difference between the self-test and this evaluator.
     pub self_test_difference: f64,
     /// Largest difference allowed.
     pub self_test_tolerance: f64,
-    /// Number of certificates.
+    /// Its certificates, oldest first.
     pub certificates: Vec<CertificateReport>,
 }
 
@@ -87,21 +90,6 @@ pub struct PlanReport {
     pub terms: usize,
     /// Floating-point operations per point.
     pub flops: usize,
-}
-
-/// One certificate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CertificateReport {
-    /// Seed of its points.
-    pub seed: u64,
-    /// Number of fresh model runs.
-    pub samples: u64,
-    /// Confidence level.
-    pub level: f64,
-    /// Lower end of the bound on the stability proportion.
-    pub lower: f64,
-    /// Upper end.
-    pub upper: f64,
 }
 
 impl InspectReport {
@@ -135,9 +123,17 @@ impl InspectReport {
             warnings: FitReport::warnings(&FitReport::of(surrogate)),
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
+            estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
             self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
-            certificates: surrogate.certificates.iter().map(certificate).collect(),
+            certificates: CertificateReport::of(surrogate),
+        }
+    }
+
+    fn estimated_error(&self) -> String {
+        match self.estimated_error_percent {
+            Some(error) => format!("estimated error {} %", significant(error, 2)),
+            None => "error not estimated, which takes two design levels".to_owned(),
         }
     }
 
@@ -168,16 +164,6 @@ fn input(input: &crate::input::Input) -> InputReport {
     }
 }
 
-fn certificate(certificate: &Certificate) -> CertificateReport {
-    CertificateReport {
-        seed: certificate.seed,
-        samples: certificate.samples,
-        level: certificate.level,
-        lower: certificate.lower,
-        upper: certificate.upper,
-    }
-}
-
 impl fmt::Display for InspectReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -199,6 +185,7 @@ impl fmt::Display for InspectReport {
             ("design", format!("{}, levels {}, seed {}", self.design, levels.join(" → "), self.seed)),
             ("method", format!("{}: {}", self.method, settings.join(", "))),
             ("modes", format!("{} by frequency rank", modes.join(", "))),
+            ("proportion", self.estimated_error()),
             ("evaluation", format!("{} terms, {} operations per point", self.plan.terms, self.plan.flops)),
             ("self-test", format!("{test}: largest difference {}", significant(self.self_test_difference, 2))),
             ("problem hash", self.problem_hash.clone()),
@@ -208,12 +195,7 @@ impl fmt::Display for InspectReport {
             writeln!(f, "  {name:<14} {fact}")?;
         }
         for certificate in &self.certificates {
-            let CertificateReport { samples, level, lower, upper, seed } = certificate;
-            writeln!(
-                f,
-                "  {:<14} {lower} to {upper} at level {level}, {samples} model runs, seed {seed}",
-                "certificate"
-            )?;
+            writeln!(f, "  {:<14} {certificate}", "certificate")?;
         }
         for kind in &self.unknown_sections {
             writeln!(f, "  {:<14} of kind {kind}, skipped: this pcc does not know it", "section")?;

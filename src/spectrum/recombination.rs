@@ -1,6 +1,6 @@
 //! From components to eigenvalues: the part of the spectrum that an evaluator needs.
 
-use crate::numerics::roots::roots;
+use crate::numerics::roots::{roots, square_root};
 use nalgebra::Complex;
 
 /// How the components of an output form eigenvalues.
@@ -69,7 +69,7 @@ impl Output {
             (OutputKind::Eigenvalue, _) => eigenvalues.push(part(0)),
             (OutputKind::Cluster, 2) => {
                 // λ = s ± √−c_0
-                let (mean, root) = (part(0), (-part(1)).sqrt());
+                let (mean, root) = (part(0), square_root(-part(1)));
                 let pair = [mean - root, mean + root];
                 let swapped = ranks_after(&pair[0], &pair[1]);
                 eigenvalues.extend([pair[usize::from(swapped)], pair[usize::from(!swapped)]]);

@@ -1,4 +1,8 @@
 //! Whether two builds of one study agree across machines.
+//!
+//! Last-bit differences between processors change the coefficients of a stepwise fit by next to nothing. A fit whose
+//! settings come out of a search can take another of several settings that are equally good; it agrees if it predicts the
+//! same within its own leave-one-out error.
 
 use super::Surrogate;
 use thiserror::Error;
@@ -7,6 +11,12 @@ use thiserror::Error;
 /// mean. Matrix products choose their kernels by processor; a build amplifies such last-bit differences by the condition
 /// of its regression, below 10⁴ for N ≥ 2 card(A).
 pub const PORTABLE_TOLERANCE: f64 = 1e-9;
+
+/// The method without a search for settings.
+const STEPWISE: &str = "stepwise";
+
+/// Leave-one-out errors by which predictions may differ: the largest of some ten points, of two builds.
+const ERRORS_APART: f64 = 5.0;
 
 /// How two surrogates differ.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -19,6 +29,16 @@ pub enum Disagreement {
     IndexSet {
         /// Id of the component.
         component: usize,
+    },
+    /// Predictions differ.
+    #[error("component {component}: predictions differ by {difference:e}, more than their leave-one-out error {error:e}")]
+    Predictions {
+        /// Id of the component.
+        component: usize,
+        /// Largest difference at the points of the self-test, in the component's unit.
+        difference: f64,
+        /// What is allowed.
+        error: f64,
     },
     /// A coefficient differs.
     #[error(
@@ -33,7 +53,8 @@ pub enum Disagreement {
 }
 
 impl Surrogate {
-    /// Compares studies, index sets (exactly) and coefficients (within [`PORTABLE_TOLERANCE`]).
+    /// Compares studies, and index sets (exactly) and coefficients (within [`PORTABLE_TOLERANCE`]) or, for methods that
+    /// search for their settings, predictions at the points of the self-test.
     ///
     /// # Errors
     ///
@@ -44,6 +65,9 @@ impl Surrogate {
         if !same_study || self.expansions.len() != other.expansions.len() {
             return Err(Disagreement::Study);
         }
+        if self.training.method != STEPWISE {
+            return self.predicts_like(other);
+        }
         for (component, (own, others)) in self.expansions.iter().zip(&other.expansions).enumerate() {
             if own.indices != others.indices {
                 return Err(Disagreement::IndexSet { component });
@@ -53,6 +77,21 @@ impl Surrogate {
             let difference = pairs.fold(0f64, |difference, (a, b)| difference.max((a - b).abs())) / largest;
             if difference > PORTABLE_TOLERANCE {
                 return Err(Disagreement::Coefficients { component, difference });
+            }
+        }
+        Ok(())
+    }
+
+    fn predicts_like(&self, other: &Self) -> Result<(), Disagreement> {
+        for (component, expansion) in self.components().into_iter().zip(&self.expansions) {
+            let unexplained = 1.0 - expansion.s2.unwrap_or(1.0);
+            let deviation = (expansion.variance() * unexplained).sqrt() * component.scale.abs();
+            let scale = self.self_test.components.iter().fold(0f64, |scale, row| scale.max(row[component.id].abs()));
+            let error = ERRORS_APART * deviation + PORTABLE_TOLERANCE * scale;
+            let rows = self.self_test.components.iter().zip(&other.self_test.components);
+            let difference = rows.fold(0f64, |most, (a, b)| most.max((a[component.id] - b[component.id]).abs()));
+            if difference > error {
+                return Err(Disagreement::Predictions { component: component.id, difference, error });
             }
         }
         Ok(())

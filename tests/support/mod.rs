@@ -21,6 +21,11 @@ pub fn shipped_study(inputs: usize) -> Study {
     Study::from_toml(&text(&format!("surrogates/clutch-r{inputs}-eigenvalues.toml"))).unwrap()
 }
 
+/// The shipped study by invariants with so many inputs.
+pub fn invariants_study(inputs: usize) -> Study {
+    Study::from_toml(&text(&format!("surrogates/clutch-r{inputs}.toml"))).unwrap()
+}
+
 /// Builds a study.
 pub fn build(study: &Study) -> Surrogate {
     pcc::build::build(study, &Silent).unwrap()

@@ -4,9 +4,10 @@ use super::super::arguments::Eval;
 use super::super::points::{Evaluated, PointsFile};
 use super::super::{Context, Ending};
 use super::{PointsReport, interruptible, keep_inputs, read_surrogate};
-use crate::eval::{Plan, evaluate_points, monte_carlo};
+use crate::eval::{EvalError, Plan, critical_values, evaluate_points, monte_carlo, sensitivities};
 use crate::report::EvalReport;
 use crate::surrogate::Surrogate;
+use anyhow::bail;
 use std::path::Path;
 use std::time::Instant;
 
@@ -17,16 +18,43 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
         keep_inputs(out, &[points, &options.surrogate])?;
         context.print(&at_points(context, &surrogate, points, out, sampling.extrapolate)?)?;
     } else {
-        context.print(&sample(context, &surrogate, sampling.samples.unwrap_or(0), sampling.seed)?)?;
+        let input = options.critical.as_deref().map(|name| input_position(&surrogate, name)).transpose()?;
+        let samples = sampling.samples.unwrap_or(0);
+        let mut report = sample(context, &surrogate, samples, sampling.seed)?;
+        if let Some(input) = input {
+            let found = critical_values(&surrogate, input, samples, sampling.seed, &context.terminal)
+                .map_err(|error| interrupted(error, &surrogate))?;
+            report.add_critical_values(&surrogate, input, &found);
+        }
+        context.print(&report)?;
     }
     Ok(Ending::Done)
 }
 
+/// Samples of the surrogate whose indices are estimated by pick-freeze: beyond, their intervals are narrow enough.
+const SENSITIVITY_SAMPLES: u64 = 50_000;
+
 pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
     let start = Instant::now();
-    let summary = monte_carlo(surrogate, samples, seed, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error.is_interruption(), &surrogate.provenance.study_name))?;
-    Ok(EvalReport::of_surrogate(surrogate, &summary, seed, start.elapsed().as_secs_f64()))
+    let summary =
+        monte_carlo(surrogate, samples, seed, &context.terminal).map_err(|error| interrupted(error, surrogate))?;
+    let elapsed = start.elapsed().as_secs_f64();
+    let base = samples.min(SENSITIVITY_SAMPLES);
+    let indices =
+        sensitivities(surrogate, base, seed, &context.terminal).map_err(|error| interrupted(error, surrogate))?;
+    Ok(EvalReport::of_surrogate(surrogate, &summary, &indices, seed, elapsed))
+}
+
+fn interrupted(error: EvalError, surrogate: &Surrogate) -> anyhow::Error {
+    interruptible(error.clone(), error.is_interruption(), &surrogate.provenance.study_name)
+}
+
+fn input_position(surrogate: &Surrogate, name: &str) -> anyhow::Result<usize> {
+    let names: Vec<&str> = surrogate.inputs.names().collect();
+    match names.iter().position(|known| *known == name) {
+        Some(position) => Ok(position),
+        None => bail!("--critical {name}: the surrogate has no such input; it has {}", names.join(", ")),
+    }
 }
 
 fn at_points(

@@ -1,6 +1,7 @@
 //! One file per command.
 
 mod build;
+mod certify;
 mod compare;
 mod convert;
 mod eval;
@@ -9,6 +10,7 @@ mod reference;
 mod run;
 
 pub(super) use build::build;
+pub(super) use certify::certify;
 pub(super) use compare::compare;
 pub(super) use convert::convert;
 pub(super) use eval::eval;

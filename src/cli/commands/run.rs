@@ -7,14 +7,21 @@ use super::compare::judge;
 use super::eval::sample;
 use super::{keep_other_files, read_study};
 use crate::artifact::Format;
-use crate::report::{BuildReport, CompareReport, EvalReport};
+use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table, count};
 use crate::study::Study;
+use crate::surrogate::Surrogate;
 use anyhow::Context as _;
 use serde::Serialize;
 use std::fmt;
 
-/// The clutch of the paper with all eight parameters uncertain.
-const BUILT_IN_STUDY: &str = include_str!("../../../surrogates/clutch-r8-eigenvalues.toml");
+/// The clutch of the paper with all eight parameters uncertain, by invariants.
+const BUILT_IN_STUDY: &str = include_str!("../../../surrogates/clutch-r8.toml");
+
+/// The same by the paper's method.
+const PAPERS_STUDY: &str = include_str!("../../../surrogates/clutch-r8-eigenvalues.toml");
+
+/// What the paper reports for it: its sparse rows with 8 parameters.
+const PAPERS_FIGURES: [&str; 4] = ["paper, sparse PC", "1706–2117", "3.15–5.85", "–"];
 
 const EVAL_SAMPLES: u64 = 1_000_000;
 /// As many direct computations as the paper's reference.
@@ -22,24 +29,42 @@ const COMPARE_SAMPLES: u64 = 10_000;
 const SAMPLE_SEED: u64 = 1;
 
 pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<Ending> {
-    let mut study = match &options.study {
+    let study = match &options.study {
         Some(path) => read_study(path)?,
         None => Study::from_toml(BUILT_IN_STUDY).context("the built-in study")?,
     };
     let source = options.study.as_ref().map_or("the built-in study".to_owned(), |path| path.display().to_string());
+    std::fs::create_dir_all(&options.output)
+        .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
+    let seed = options.seed.unwrap_or(SAMPLE_SEED);
+    let (surrogate, build, compare) = build_and_compare(context, options, study, &source)?;
+    let eval = sample(context, &surrogate, EVAL_SAMPLES, seed)
+        .with_context(|| format!("after the surrogate was written to {}", build.file))?;
+    let mut methods = vec![MethodRow::new("invariants", &build, &compare)];
+    if options.study.is_none() {
+        let papers = Study::from_toml(PAPERS_STUDY).context("the built-in study by the paper's method")?;
+        let (_, build, compare) = build_and_compare(context, options, papers, &source)?;
+        methods.push(MethodRow::new("eigenvalue components", &build, &compare));
+    }
+    context.print(&RunReport { build, eval, compare, methods })?;
+    Ok(Ending::Done)
+}
+
+/// Builds the surrogate of `study` into the output folder and compares it with the model.
+fn build_and_compare(
+    context: &Context,
+    options: &Run,
+    mut study: Study,
+    source: &str,
+) -> anyhow::Result<(Surrogate, BuildReport, CompareReport)> {
     study.seed = options.seed.unwrap_or(study.seed);
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
     let path = options.output.join(format!("{}.{}", study.name, Format::Binary.extension()));
-    std::fs::create_dir_all(&options.output)
-        .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
-
     keep_other_files(&path)?;
-    let (surrogate, build) = build_to_file(context, &study, &source, &path, Format::Binary)?;
-    let finished = || format!("after the surrogate was written to {}", path.display());
-    let eval = sample(context, &surrogate, EVAL_SAMPLES, seed).with_context(finished)?;
-    let compare = judge(context, &surrogate, &study, &source, COMPARE_SAMPLES, seed).with_context(finished)?;
-    context.print(&RunReport { build, eval, compare })?;
-    Ok(Ending::Done)
+    let (surrogate, build) = build_to_file(context, &study, source, &path, Format::Binary)?;
+    let compare = judge(context, &surrogate, &study, source, COMPARE_SAMPLES, seed)
+        .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
+    Ok((surrogate, build, compare))
 }
 
 /// A file name as a shell takes it.
@@ -54,6 +79,48 @@ struct RunReport {
     build: BuildReport,
     eval: EvalReport,
     compare: CompareReport,
+    /// One row per method that was tried.
+    methods: Vec<MethodRow>,
+}
+
+/// What a method costs and how good it is.
+#[derive(Debug, Serialize)]
+struct MethodRow {
+    method: &'static str,
+    file: String,
+    direct_computations: u64,
+    relative_error_percent: Option<f64>,
+    misclassified_percent: f64,
+}
+
+impl MethodRow {
+    fn new(method: &'static str, build: &BuildReport, compare: &CompareReport) -> Self {
+        Self {
+            method,
+            file: build.file.clone(),
+            direct_computations: build.direct_computations,
+            relative_error_percent: compare.relative_error_percent,
+            misclassified_percent: compare.misclassified_percent,
+        }
+    }
+
+    /// All rows, with the paper's figures below.
+    fn table(rows: &[Self]) -> Table {
+        let right = Align::Right;
+        let columns =
+            [("method", Align::Left), ("model runs", right), ("error of proportion %", right), ("misclassified %", right)];
+        let mut table = Table::new(&columns);
+        for row in rows {
+            table.row([
+                row.method.to_owned(),
+                count(row.direct_computations),
+                row.relative_error_percent.map_or("–".to_owned(), |error| format!("{error:.2}")),
+                format!("{:.2}", row.misclassified_percent),
+            ]);
+        }
+        table.row(PAPERS_FIGURES);
+        table
+    }
 }
 
 impl fmt::Display for RunReport {
@@ -66,8 +133,12 @@ impl fmt::Display for RunReport {
         writeln!(f, "{}", self.eval)?;
         heading(f, "compare with the model")?;
         writeln!(f, "{}", self.compare)?;
+        if self.methods.len() > 1 {
+            heading(f, "methods")?;
+            writeln!(f, "{}", MethodRow::table(&self.methods))?;
+        }
         heading(f, "answer")?;
-        let Self { build, eval, compare } = self;
+        let Self { build, eval, compare, .. } = self;
         writeln!(
             f,
             "The system is stable in {:.2} % of cases, by a surrogate built from {} model runs.\n\
@@ -76,7 +147,7 @@ impl fmt::Display for RunReport {
              The surrogate is in {}; sample it again with\n\n    pcc eval {} -n 1e6",
             100.0 * eval.stable_proportion,
             build.direct_computations,
-            crate::report::count(compare.samples),
+            count(compare.samples),
             compare.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("{error:.2}")),
             compare.misclassified_percent,
             build.file,

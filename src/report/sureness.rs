@@ -1,0 +1,104 @@
+//! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
+
+use super::table::count;
+use crate::statistics::{Interval, Proportion};
+use crate::surrogate::{Certificate, Decision, Surrogate};
+use serde::Serialize;
+use std::fmt;
+
+/// Three answers to "how sure?", each about something else.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Sureness {
+    /// Wilson interval of the share: what the finite number of samples leaves open.
+    pub interval: Interval,
+    /// Number of these samples.
+    #[serde(skip)]
+    pub samples: u64,
+    /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves open;
+    /// null if unknown.
+    pub surrogate_band: Option<Interval>,
+    /// Estimated relative error of the proportion; null if unknown.
+    pub estimated_error_percent: Option<f64>,
+    /// The certificate with the most model runs, the first of equals; null if there is none.
+    pub verified_bound: Option<VerifiedBound>,
+}
+
+/// A bound from fresh model runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VerifiedBound {
+    /// The bound.
+    #[serde(flatten)]
+    pub bound: Interval,
+    /// Fresh model runs.
+    pub samples: u64,
+    /// Their seed.
+    pub seed: u64,
+    /// How many certificates the file has: choosing among many would void the level.
+    pub certificates: usize,
+}
+
+impl Sureness {
+    /// Of `stable` samples, of which the second would be so many if max Re λ were shifted.
+    pub fn new(surrogate: &Surrogate, stable: Proportion, if_shifted: [u64; 2], interval: Interval) -> Self {
+        let decision = &surrogate.decision;
+        let share = |hits| Proportion { hits, samples: stable.samples }.value();
+        let band = Interval { lower: share(if_shifted[1]), upper: share(if_shifted[0]), level: Decision::BAND_LEVEL };
+        Self {
+            interval,
+            samples: stable.samples,
+            surrogate_band: (!decision.max_re_residuals.is_empty()).then_some(band),
+            estimated_error_percent: decision.proportion_error.map(|error| 100.0 * error),
+            verified_bound: verified_bound(surrogate),
+        }
+    }
+}
+
+fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
+    let own = |certificate: &&Certificate| certificate.problem_hash == surrogate.provenance.problem_hash;
+    let valid: Vec<&Certificate> = surrogate.certificates.iter().filter(own).collect();
+    let most = valid.iter().map(|certificate| certificate.samples).max()?;
+    let chosen = valid.iter().find(|certificate| certificate.samples == most)?;
+    let Certificate { lower, upper, level, samples, seed, .. } = **chosen;
+    Some(VerifiedBound { bound: Interval { lower, upper, level }, samples, seed, certificates: valid.len() })
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.3} %", 100.0 * share)
+}
+
+impl fmt::Display for Sureness {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let range = |interval: &Interval| format!("{} to {}", percent(interval.lower), percent(interval.upper));
+        let level = |interval: &Interval| format!("{:.0} %", 100.0 * interval.level);
+        let Self { interval, surrogate_band, verified_bound, .. } = self;
+        writeln!(
+            f,
+            "  sampling interval      {}   {}, from {} samples",
+            range(interval),
+            level(interval),
+            count(self.samples)
+        )?;
+        match (surrogate_band, self.estimated_error_percent) {
+            (None, _) => writeln!(f, "  surrogate band         unknown: no point could be left out")?,
+            (Some(band), error) => {
+                let error = error.map_or(String::new(), |error| {
+                    format!("; estimated error {} % of the proportion", super::significant(error, 2))
+                });
+                writeln!(f, "  surrogate band         {}   {} of points left out{error}", range(band), level(band))?;
+            }
+        }
+        match verified_bound {
+            None => writeln!(f, "  verified bound         none; `pcc certify` makes one from fresh model runs"),
+            Some(VerifiedBound { bound, samples, seed, certificates }) => {
+                let others = if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
+                writeln!(
+                    f,
+                    "  verified bound         {}   {}, {} fresh model runs, seed {seed}{others}",
+                    range(bound),
+                    level(bound),
+                    count(*samples)
+                )
+            }
+        }
+    }
+}
