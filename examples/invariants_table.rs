@@ -18,7 +18,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let numbers: Vec<u64> = std::env::args().skip(1).map(|argument| argument.parse()).collect::<Result<_, _>>()?;
     let points = numbers.first().copied().unwrap_or(100_000);
     let asked = |inputs: usize| numbers.len() < 2 || numbers[1..].contains(&(inputs as u64));
-    println!(" r  seed   runs  error %  estimated %  misclassified %  build s   at most: runs, error %, misclassified %");
+    println!(
+        " r  seed   runs  error %  estimated %  misclassified %  build s   at most: runs, error %, misclassified %"
+    );
     let mut all_hold = true;
     for (inputs, runs, error, misclassified) in BARS.into_iter().filter(|bar| asked(bar.0)) {
         let study = study(&format!("clutch-r{inputs}"))?;

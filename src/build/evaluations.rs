@@ -5,7 +5,7 @@ use crate::design::{NestedLatinHypercube, Run, RunError, Runner, Samples};
 use crate::model::ModelError;
 use crate::progress::Observer;
 use crate::spectrum::{ClusterError, Output, Spectrum, components as components_of};
-use crate::study::Study;
+use crate::study::{DesignKind, Study};
 
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
 const SOLVER_ACCURACY: f64 = 1e-13;
@@ -22,7 +22,10 @@ impl<'a> Evaluations<'a> {
     pub fn new(study: &'a Study) -> Result<Self, ModelError> {
         Ok(Self {
             study,
-            design: NestedLatinHypercube::new(study.inputs.dimension(), study.seed),
+            design: match study.design.kind {
+                DesignKind::NestedLhs => NestedLatinHypercube::new(study.inputs.dimension(), study.seed),
+                DesignKind::NestedMaximinLhs => NestedLatinHypercube::spread_out(study.inputs.dimension(), study.seed),
+            },
             runner: Runner::new(study)?,
             runs: Vec::new(),
         })
@@ -66,7 +69,8 @@ impl<'a> Evaluations<'a> {
 
     /// The values of each component of `outputs`, by id: one value per point.
     pub fn components(&self, outputs: &[Output]) -> Result<Vec<Vec<f64>>, BuildError> {
-        let mut components = vec![Vec::with_capacity(self.runs.len()); outputs.iter().map(|o| o.components.len()).sum()];
+        let mut components =
+            vec![Vec::with_capacity(self.runs.len()); outputs.iter().map(|o| o.components.len()).sum()];
         for (i, run) in self.runs.iter().enumerate() {
             let values = components_of(outputs, &run.spectrum).map_err(|cause| RunError::Spectrum {
                 point: self.study.inputs.describe(&self.study.inputs.physical(self.samples().point(i))),

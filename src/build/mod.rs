@@ -101,9 +101,10 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
         let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, &levels);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         (surrogate.decision, former) = decision(&surrogate, &results, &values, evaluations.runs(), former, observer)?;
-        let is_decided = study.fit.proportion_tolerance.is_none_or(|tolerance| {
-            surrogate.decision.proportion_error.is_some_and(|error| error <= tolerance)
-        });
+        let is_decided = study
+            .fit
+            .proportion_tolerance
+            .is_none_or(|tolerance| surrogate.decision.proportion_error.is_some_and(|error| error <= tolerance));
         match next {
             Some(next) if !(is_accurate && is_decided) => size = next,
             _ => {

@@ -46,7 +46,8 @@ pub(super) fn surrogate(
 fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
     Expansion {
         indices: fitted.indices.clone(),
-        coefficients: fitted.coefficients.iter().map(|coefficient| coefficient / component.scale).collect(),        r2: fitted.errors.map(|errors| errors.r2),
+        coefficients: fitted.coefficients.iter().map(|coefficient| coefficient / component.scale).collect(),
+        r2: fitted.errors.map(|errors| errors.r2),
         s2: fitted.errors.and_then(|errors| errors.s2),
         corrected_s2: fitted.errors.and_then(|errors| errors.corrected_s2),
         leave_out: LeaveOut::Row,

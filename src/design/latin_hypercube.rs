@@ -4,8 +4,11 @@
 //! points by dividing every input into N′ strata, of which the old points occupy at most N; each new point falls into an
 //! empty one, in every input. If the design was a Latin hypercube and N divides N′, no two old points share a finer
 //! stratum and the result is a Latin hypercube again. No point is ever dropped, so no model run is lost.
+//!
+//! The strata of new points are paired at random; a design may then spread its new points by exchanging coordinates.
 
 use super::samples::Samples;
+use super::spread::Spread;
 use crate::random::{Purpose, Stream, UNIT_BITS, unit_interval};
 use rand::seq::SliceRandom;
 
@@ -30,6 +33,7 @@ pub struct NestedLatinHypercube {
     seed: u64,
     /// Point by point, `dimension` cells each.
     cells: Vec<u64>,
+    spreads: bool,
 }
 
 impl NestedLatinHypercube {
@@ -40,7 +44,16 @@ impl NestedLatinHypercube {
     /// If `dimension` is zero.
     pub fn new(dimension: usize, seed: u64) -> Self {
         assert!(dimension > 0, "a design needs at least one input");
-        Self { dimension, seed, cells: Vec::new() }
+        Self { dimension, seed, cells: Vec::new(), spreads: false }
+    }
+
+    /// The same, with the points of every level spread apart from each other and from those before them.
+    ///
+    /// # Panics
+    ///
+    /// If `dimension` is zero.
+    pub fn spread_out(dimension: usize, seed: u64) -> Self {
+        Self { spreads: true, ..Self::new(dimension, seed) }
     }
 
     /// Number of points.
@@ -74,6 +87,12 @@ impl NestedLatinHypercube {
             strata.shuffle(&mut stream);
             for (i, stratum) in (old..size).zip(strata) {
                 self.cells[i * self.dimension + j] = cell_in_stratum(stratum, size as u64, &mut stream);
+            }
+        }
+        if self.spreads {
+            let coordinates = self.cells.iter().map(|&cell| unit_interval(cell)).collect();
+            for (j, a, b) in Spread::new(self.dimension, coordinates).exchanges(old, &mut stream) {
+                self.cells.swap(a * self.dimension + j, b * self.dimension + j);
             }
         }
     }
@@ -156,6 +175,21 @@ mod tests {
         }
 
         #[test]
+        fn spreading_keeps_every_stratum_occupied_and_old_points_in_place(
+            dimension in 1..5usize, seed: u64, size in 2..20usize, factor in 2..4usize,
+        ) {
+            let mut spread = NestedLatinHypercube::spread_out(dimension, seed);
+            spread.grow_to(size);
+            let before = spread.cells().to_vec();
+            spread.grow_to(factor * size);
+            prop_assert_eq!(&spread.cells()[..before.len()], &before[..]);
+            let samples = spread.samples(|_, unit| unit);
+            for j in 0..dimension {
+                prop_assert_eq!(occupation(&samples, j, 0..factor * size, factor * size), vec![1; factor * size]);
+            }
+        }
+
+        #[test]
         fn other_sizes_put_new_points_into_empty_strata(
             dimension in 1..5usize, size in 2..50usize, steps in prop::collection::vec(1..40usize, 1..4), seed: u64,
         ) {
@@ -186,6 +220,32 @@ mod tests {
     }
 
     /// Pins the design itself: generator, shuffle and strata.
+    /// The smallest distance between two points of the unit cube.
+    fn closest(design: &NestedLatinHypercube) -> f64 {
+        let samples = design.samples(|_, unit| unit);
+        let mut closest = f64::INFINITY;
+        for i in 0..samples.len() {
+            for k in 0..i {
+                let square = samples.point(i).iter().zip(samples.point(k)).map(|(x, y)| (x - y) * (x - y)).sum::<f64>();
+                closest = closest.min(square.sqrt());
+            }
+        }
+        closest
+    }
+
+    #[test]
+    fn spreading_moves_the_closest_points_apart() {
+        for seed in 0..10 {
+            let (mut random, mut spread) =
+                (NestedLatinHypercube::new(4, seed), NestedLatinHypercube::spread_out(4, seed));
+            for size in [30, 60] {
+                random.grow_to(size);
+                spread.grow_to(size);
+                assert!(closest(&spread) > 1.3 * closest(&random), "seed {seed}, {size} points");
+            }
+        }
+    }
+
     #[test]
     fn known_design() {
         let design = design(2, 1, &[2, 3]);

@@ -3,6 +3,7 @@
 mod latin_hypercube;
 mod run;
 mod samples;
+mod spread;
 
 pub use latin_hypercube::NestedLatinHypercube;
 pub use run::{Run, RunError, Runner};

@@ -175,8 +175,10 @@ impl CrossValidation {
         let error = |terms: usize| -> f64 {
             by_fold.iter().map(|path| path[terms - 1].norm_squared()).sum::<f64>() / values.len() as f64
         };
-        let (terms, error) =
-            (1..=longest).map(|terms| (terms, error(terms))).min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((1, f64::MAX));
+        let (terms, error) = (1..=longest)
+            .map(|terms| (terms, error(terms)))
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or((1, f64::MAX));
         let mut residuals = vec![0.0; values.len()];
         for (fold, path) in by_fold.iter().enumerate().filter(|_| longest > 0) {
             let points = (fold..values.len()).step_by(folds);
@@ -241,7 +243,8 @@ struct Step {
 impl<'a> Path<'a> {
     fn new(columns: &'a DMatrix<f64>, values: &[f64]) -> Self {
         let residual = DVector::from_column_slice(values);
-        let lengths = DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm_squared()));
+        let lengths =
+            DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm_squared()));
         Self {
             columns,
             terms: Vec::new(),

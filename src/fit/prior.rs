@@ -103,7 +103,11 @@ impl Prior {
 
     /// ln s_α of one input's factor.
     fn log_factor(&self, input: usize, degree: u16) -> f64 {
-        if degree == 0 { 0.0 } else { self.parameters[self.inputs()] - self.parameters[input].exp() * f64::from(degree) }
+        if degree == 0 {
+            0.0
+        } else {
+            self.parameters[self.inputs()] - self.parameters[input].exp() * f64::from(degree)
+        }
     }
 
     /// s_α.

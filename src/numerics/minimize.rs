@@ -109,9 +109,8 @@ struct Box<'a> {
 
 impl Box<'_> {
     fn point(&self, z: &DVector<f64>) -> Vec<f64> {
-        let inside = |(&(lower, upper), z): (&(f64, f64), &f64)| {
-            0.5 * (lower + upper) + 0.5 * (upper - lower) * z.tanh()
-        };
+        let inside =
+            |(&(lower, upper), z): (&(f64, f64), &f64)| 0.5 * (lower + upper) + 0.5 * (upper - lower) * z.tanh();
         self.bounds.iter().zip(z.iter()).map(inside).collect()
     }
 

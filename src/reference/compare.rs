@@ -187,8 +187,7 @@ fn invariant_errors(
     runs: &[Run],
     block: &Block,
 ) -> Result<Vec<ComponentError>, (usize, SpectrumError)> {
-    let clusters: Vec<&Output> =
-        surrogate.outputs.iter().filter(|output| output.kind == OutputKind::Cluster).collect();
+    let clusters: Vec<&Output> = surrogate.outputs.iter().filter(|output| output.kind == OutputKind::Cluster).collect();
     let mut values = vec![Vec::with_capacity(runs.len()); surrogate.expansions.len()];
     let mut at_run = vec![0.0; surrogate.expansions.len()];
     for (i, run) in runs.iter().enumerate() {

@@ -3,8 +3,8 @@
 use super::build::FitReport;
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::sureness::Sureness;
-use crate::eval::{CriticalValues, Sensitivities};
 use super::table::{Align, Table, count, significant};
+use crate::eval::{CriticalValues, Sensitivities};
 use crate::spectrum::{ModeSummary, Output, Summary};
 use crate::statistics::{Interval, Moments};
 use crate::surrogate::{Quantile, Surrogate};

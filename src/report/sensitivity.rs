@@ -50,11 +50,8 @@ pub struct Bounded {
 impl SensitivityReport {
     /// The report for inputs with these names.
     pub fn new<'a>(names: impl Iterator<Item = &'a str>, found: &Sensitivities) -> Self {
-        let bounded = |estimate: Estimate| Bounded {
-            value: estimate.value,
-            lower: estimate.lower,
-            upper: estimate.upper,
-        };
+        let bounded =
+            |estimate: Estimate| Bounded { value: estimate.value, lower: estimate.lower, upper: estimate.upper };
         let pair = |indices: &Option<Vec<Sensitivity>>, j: usize| {
             let index = indices.as_ref()?.get(j)?;
             Some(IndexPair { first: bounded(index.first), total: bounded(index.total) })

@@ -90,7 +90,8 @@ impl fmt::Display for Sureness {
         match verified_bound {
             None => writeln!(f, "  verified bound         none; `pcc certify` makes one from fresh model runs"),
             Some(VerifiedBound { bound, samples, seed, certificates }) => {
-                let others = if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
+                let others =
+                    if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
                 writeln!(
                     f,
                     "  verified bound         {}   {}, {} fresh model runs, seed {seed}{others}",

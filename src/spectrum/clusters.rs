@@ -77,13 +77,7 @@ pub fn clusters(spectra: &[Spectrum], modes: &[usize]) -> Result<Vec<Vec<usize>>
         let (has_lower, has_upper) = (modes.contains(&lower), modes.contains(&upper));
         if has_lower != has_upper {
             let (listed, missing) = if has_lower { (lower, upper) } else { (upper, lower) };
-            return Err(ClusterError::Split {
-                listed,
-                missing,
-                first: frequency(lower),
-                second: frequency(upper),
-                at,
-            });
+            return Err(ClusterError::Split { listed, missing, first: frequency(lower), second: frequency(upper), at });
         }
     }
     modes.iter().filter(|&&mode| mode <= count).try_for_each(|&mode| off_the_real_axis(spectra, mode))?;

@@ -75,7 +75,8 @@ impl Output {
                 eigenvalues.extend([pair[usize::from(swapped)], pair[usize::from(!swapped)]]);
             }
             (OutputKind::Cluster, modes) => {
-                let (mut coefficients, mut found) = ([Complex::default(); MOST_MODES], [Complex::default(); MOST_MODES]);
+                let (mut coefficients, mut found) =
+                    ([Complex::default(); MOST_MODES], [Complex::default(); MOST_MODES]);
                 for k in 1..modes.min(MOST_MODES) {
                     coefficients[k] = part(k);
                 }

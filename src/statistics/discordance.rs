@@ -17,11 +17,13 @@
 
 use super::proportion::{Interval, Proportion};
 
-/// Share of the error probability α = 1 − level that is left to each of the two discordant probabilities.
-const ERROR_SHARE_OF_DISCORDANCE: f64 = 0.25;
+/// Share of the error probability α = 1 − level that is left to each of the two discordant probabilities: about a quarter
+/// to either side of each.
+const ERROR_SHARE_OF_DISCORDANCE: f64 = 0.49;
 
-/// Share of α that is left to the surrogate's own proportion; with the two above the shares sum to one.
-const ERROR_SHARE_OF_SURROGATE: f64 = 0.5;
+/// Share of α that is left to the surrogate's own proportion. Little is enough where samples of the surrogate cost
+/// nothing; with the two above the shares sum to one.
+const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 
 /// How often surrogate and model disagreed about stability at `samples` fresh points.
 ///
@@ -56,13 +58,13 @@ impl Discordance {
     ///
     /// # Formula
     ///
-    /// With α = 1 − `level` and Clopper–Pearson intervals \[s⁻, s⁺\] of p_s at error α/2, \[a⁻, a⁺\] of P(falsely
-    /// stable) and \[b⁻, b⁺\] of P(falsely unstable) at error α/4 each,
+    /// With α = 1 − `level` and Clopper–Pearson intervals \[s⁻, s⁺\] of p_s at error 0.02 α, \[a⁻, a⁺\] of P(falsely
+    /// stable) and \[b⁻, b⁺\] of P(falsely unstable) at error 0.49 α each,
     ///
     /// max(0, s⁻ − a⁺ + b⁻) ≤ p ≤ min(1, s⁺ − a⁻ + b⁺).
     ///
     /// Each interval misses its probability with at most its error, so by Bonferroni's inequality one or more of them
-    /// miss with at most α/2 + α/4 + α/4 = α, however they depend on each other: both discordant counts come from the
+    /// miss with at most 0.02 α + 2 · 0.49 α = α, however they depend on each other: both discordant counts come from the
     /// same points. When none misses, p = p_s − P(falsely stable) + P(falsely unstable) lies between the two sides.
     ///
     /// Without fresh points the bound is \[0, 1\].
@@ -143,9 +145,9 @@ mod tests {
     fn no_disagreement_leaves_the_width_of_what_may_have_been_missed() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
         let bound = Discordance { samples: 100, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
-        // One-sided α/8 of 100 points without a hit: 1 − (0.05/8)^(1/100).
-        let missed = 1.0 - (0.05f64 / 8.0).powf(0.01);
-        let own = surrogate.clopper_pearson(0.975);
+        // One-sided 0.245 α of 100 points without a hit: 1 − (0.245 · 0.05)^(1/100).
+        let missed = 1.0 - (0.245f64 * 0.05).powf(0.01);
+        let own = surrogate.clopper_pearson(0.999);
         assert!((bound.lower - (own.lower - missed)).abs() < 1e-9, "{bound:?}");
         assert!((bound.upper - (own.upper + missed)).abs() < 1e-9, "{bound:?}");
     }

@@ -1,5 +1,6 @@
 //! Defaults of a study: at most one formula in the number of inputs r each.
 
+use super::DesignKind;
 use crate::spectrum::{Modes, Target};
 
 pub(super) const SEED: u64 = 1;
@@ -23,6 +24,14 @@ pub(super) fn maximum(target: Target) -> usize {
 
 /// For invariants: a tenth of a percent of the proportion, a tenth of what the sampling of a few thousand runs leaves open.
 pub(super) const PROPORTION_TOLERANCE: f64 = 1e-3;
+
+/// The paper's designs for its own method, spread ones for invariants.
+pub(super) fn design(target: Target) -> DesignKind {
+    match target {
+        Target::Eigenvalues => DesignKind::NestedLhs,
+        _ => DesignKind::NestedMaximinLhs,
+    }
+}
 
 /// Runs of the first level, and of each enrichment. Eigenvalues need some terms for every pair of inputs at high degree;
 /// invariants few, and at least two levels to judge by, the second twice the first.

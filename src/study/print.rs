@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{FitMethod, FitSettings, ModelSettings, STUDY_FORMAT, Study};
+use super::{DesignKind, FitMethod, FitSettings, ModelSettings, STUDY_FORMAT, Study};
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
 use crate::spectrum::{Modes, Target};
@@ -31,7 +31,11 @@ pub(super) fn study(study: &Study) -> String {
     file.line("modes", modes, "by frequency rank from 1, or \"all\" that oscillate");
 
     file.table("design");
-    file.line("kind", format!("{:?}", study.design.kind.name()), "nested Latin hypercube levels");
+    let kind = match study.design.kind {
+        DesignKind::NestedLhs => "nested Latin hypercube levels",
+        DesignKind::NestedMaximinLhs => "nested Latin hypercube levels, points spread apart",
+    };
+    file.line("kind", format!("{:?}", study.design.kind.name()), kind);
     file.line("initial", study.design.initial, "model runs of the first level");
     file.line("step", study.design.step, "model runs added by each enrichment");
     file.line("maximum", study.design.maximum, "model runs never exceeded");

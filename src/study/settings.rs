@@ -37,6 +37,8 @@ pub struct SpectrumSettings {
 pub enum DesignKind {
     /// Nested Latin hypercube levels.
     NestedLhs,
+    /// The same with points spread apart.
+    NestedMaximinLhs,
 }
 
 impl DesignKind {
@@ -44,6 +46,7 @@ impl DesignKind {
     pub fn name(self) -> &'static str {
         match self {
             Self::NestedLhs => "nested-lhs",
+            Self::NestedMaximinLhs => "nested-maximin-lhs",
         }
     }
 }

@@ -19,6 +19,8 @@ const HIGHEST_DEGREE: i64 = 100;
 /// Design sizes above this need more memory for the regression than a workstation has.
 const LARGEST_DESIGN: i64 = 1_000_000;
 
+const DESIGNS: [DesignKind; 2] = [DesignKind::NestedLhs, DesignKind::NestedMaximinLhs];
+
 const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
 /// Univariate polynomial values that a design may need: two gigabytes.
@@ -48,15 +50,7 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     if numbers > LARGEST_TABLES {
         return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
     }
-    Ok(Study {
-        name,
-        seed,
-        model: ModelSettings::Clutch { constants },
-        inputs,
-        spectrum,
-        design,
-        fit,
-    })
+    Ok(Study { name, seed, model: ModelSettings::Clutch { constants }, inputs, spectrum, design, fit })
 }
 
 /// Knows the text, so that errors can name lines.
@@ -214,8 +208,8 @@ impl Lines<'_> {
 
     fn design(&self, raw: raw::Design, target: Target, inputs: usize) -> Result<DesignSettings, StudyError> {
         let kind = match raw.kind {
-            Some(word) => self.word("design.kind", &word, &[("nested-lhs", DesignKind::NestedLhs)])?,
-            None => DesignKind::NestedLhs,
+            Some(word) => self.word("design.kind", &word, &DESIGNS.map(|kind| (kind.name(), kind)))?,
+            None => defaults::design(target),
         };
         let size = |key: &str, value: Option<Spanned<i64>>, smallest: i64, default: usize| match value {
             Some(value) => self.integer(key, value, smallest..=LARGEST_DESIGN).map(|size| size as usize),

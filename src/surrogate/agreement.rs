@@ -31,7 +31,9 @@ pub enum Disagreement {
         component: usize,
     },
     /// Predictions differ.
-    #[error("component {component}: predictions differ by {difference:e}, more than their leave-one-out error {error:e}")]
+    #[error(
+        "component {component}: predictions differ by {difference:e}, more than their leave-one-out error {error:e}"
+    )]
     Predictions {
         /// Id of the component.
         component: usize,

@@ -107,8 +107,12 @@ impl MethodRow {
     /// All rows, with the paper's figures below.
     fn table(rows: &[Self]) -> Table {
         let right = Align::Right;
-        let columns =
-            [("method", Align::Left), ("model runs", right), ("error of proportion %", right), ("misclassified %", right)];
+        let columns = [
+            ("method", Align::Left),
+            ("model runs", right),
+            ("error of proportion %", right),
+            ("misclassified %", right),
+        ];
         let mut table = Table::new(&columns);
         for row in rows {
             table.row([
