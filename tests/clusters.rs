@@ -5,7 +5,8 @@ mod support;
 
 use nalgebra::Complex;
 use pcc::design::Samples;
-use pcc::fit::{Fitted, Prior, minimum_norm};
+use pcc::fit::Fitted;
+use pcc::fit::minimum_norm::{self, Learnt};
 use pcc::polynomial::Family;
 use pcc::progress::Silent;
 use pcc::regression::{BasisTables, Response};
@@ -47,7 +48,7 @@ fn fit(design: &Set, outputs: &[Output]) -> Vec<Fitted> {
         .map(|id| {
             let of_component: Vec<f64> = values.iter().map(|row| row[id]).collect();
             let response = Response { values: &of_component, resolution: 0.0 };
-            minimum_norm::fit(&tables, response, &settings, &Prior::start(INPUTS), &Silent).unwrap().0
+            minimum_norm::fit(&tables, response, &settings, &Learnt::nothing(INPUTS), &Silent).unwrap().0
         })
         .collect()
 }

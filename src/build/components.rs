@@ -113,8 +113,8 @@ impl<'a> ComponentFit<'a> {
             }
             (method, _) => {
                 let settings = crate::study::Smooth { max_degree: method.max_degree(), s2_target: method.s2_target() };
-                let (result, prior) = minimum_norm::fit(tables, response, &settings, &memory.prior, observer)?;
-                (result, "minimum-norm", Memory { prior, ..*memory })
+                let (result, learnt) = minimum_norm::fit(tables, response, &settings, &memory.learnt, observer)?;
+                (result, "minimum-norm", Memory { learnt, ..*memory })
             }
         };
         Ok(Some((ComponentResult { result, solver }, memory)))

@@ -6,7 +6,7 @@ mod evaluations;
 mod record;
 
 use components::ComponentFit;
-use decision::{Former, decision};
+use decision::{Former, judge};
 use evaluations::Evaluations;
 
 use crate::design::RunError;
@@ -76,6 +76,7 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
     let mut levels = Vec::new();
     let mut grouping: Vec<Output> = Vec::new();
     let mut former: Option<Former> = None;
+    let mut progress = Progress { lowest: f64::INFINITY, levels_since: 0 };
     let mut size = study.design.initial;
     loop {
         levels.push(size as u64);
@@ -100,11 +101,12 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
             || fitted.iter().all(|fit| fit.result.stop != Stop::DesignExhausted);
         let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, &levels);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
-        (surrogate.decision, former) = decision(&surrogate, &results, &values, evaluations.runs(), former, observer)?;
-        let is_decided = study
-            .fit
-            .proportion_tolerance
-            .is_none_or(|tolerance| surrogate.decision.proportion_error.is_some_and(|error| error <= tolerance));
+        let judgement = judge(&surrogate, &results, &values, evaluations.runs(), former, observer)?;
+        (surrogate.decision, former) = (judgement.decision, judgement.former);
+        let is_decided = study.fit.proportion_tolerance.is_none_or(|tolerance| {
+            progress.note(judgement.reducible_error);
+            judgement.reducible_error.is_some_and(|error| error <= tolerance) || progress.has_stalled()
+        });
         match next {
             Some(next) if !(is_accurate && is_decided) => size = next,
             _ => {
@@ -112,6 +114,29 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
                 return Ok(surrogate);
             }
         }
+    }
+}
+
+/// Levels in a row without a lower estimate after which more runs are taken to be of no use: where stability is within
+/// rounding of its limit everywhere, or where the model jumps.
+const PATIENCE: usize = 4;
+
+/// Whether the estimated error of the proportion still falls.
+struct Progress {
+    lowest: f64,
+    levels_since: usize,
+}
+
+impl Progress {
+    fn note(&mut self, error: Option<f64>) {
+        match error {
+            Some(error) if error < self.lowest => (self.lowest, self.levels_since) = (error, 0),
+            _ => self.levels_since += 1,
+        }
+    }
+
+    fn has_stalled(&self) -> bool {
+        self.levels_since >= PATIENCE
     }
 }
 

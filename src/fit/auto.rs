@@ -4,8 +4,9 @@
 //! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by folds,
 //! because its leave-one-out error does not see the selection of terms.
 
+use super::minimum_norm::Learnt;
 use super::omp::Candidates;
-use super::{Fitted, Prior, minimum_norm, omp};
+use super::{Fitted, minimum_norm, omp};
 use crate::progress::{Interrupted, Observer};
 use crate::regression::{BasisTables, Response};
 use crate::study::Smooth;
@@ -13,11 +14,14 @@ use crate::study::Smooth;
 /// Pursuit is given up for larger designs once its mean square error is so many times that of the other fit.
 const HOPELESS: f64 = 4.0;
 
+/// Designs smaller than this say little of either.
+const ENOUGH_POINTS: usize = 20;
+
 /// What the fit of a component on one design passes on to the next larger one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Memory {
-    /// The prior that was best.
-    pub prior: Prior,
+    /// What the minimum-norm fit learnt.
+    pub learnt: Learnt,
     /// Whether pursuit is still worth trying.
     pub tries_pursuit: bool,
 }
@@ -25,7 +29,7 @@ pub struct Memory {
 impl Memory {
     /// Before the first design.
     pub fn new(inputs: usize) -> Self {
-        Self { prior: Prior::start(inputs), tries_pursuit: true }
+        Self { learnt: Learnt::nothing(inputs), tries_pursuit: true }
     }
 }
 
@@ -43,13 +47,14 @@ pub fn fit(
     memory: &Memory,
     observer: &dyn Observer,
 ) -> Result<(Fitted, &'static str, Memory), Interrupted> {
-    let (smooth, prior) = minimum_norm::fit(tables, response, settings, &memory.prior, observer)?;
-    let mut memory = Memory { prior, ..*memory };
+    let (smooth, learnt) = minimum_norm::fit(tables, response, settings, &memory.learnt, observer)?;
+    let mut memory = Memory { learnt, ..*memory };
     if !memory.tries_pursuit || smooth.errors.is_none() {
         return Ok((smooth, "minimum-norm", memory));
     }
     let pursued = omp::fit(tables, response, candidates, settings, observer)?;
     let error = |fitted: &Fitted| 1.0 - fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY);
-    memory.tries_pursuit = error(&pursued) < HOPELESS * error(&smooth);
+    let is_hopeless = error(&pursued) >= HOPELESS * error(&smooth) && response.values.len() >= ENOUGH_POINTS;
+    memory.tries_pursuit = !is_hopeless;
     if error(&pursued) < error(&smooth) { Ok((pursued, "omp", memory)) } else { Ok((smooth, "minimum-norm", memory)) }
 }

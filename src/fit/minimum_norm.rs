@@ -33,6 +33,9 @@ use nalgebra::{DMatrix, DVector};
 /// errors that matter.
 const NUGGET: f64 = 1e-11;
 
+/// Powers of ten by which ν may rise where rounding makes K indefinite.
+const NUGGETS: i32 = 5;
+
 /// Candidates per run: prior variances beyond them are negligible (2 gave the same results as 8).
 const CANDIDATES_PER_RUN: usize = 3;
 
@@ -41,6 +44,16 @@ const PRIOR_POINTS: usize = 300;
 
 /// Dropped terms together are below this share of the leave-one-out error.
 const DROPPED_SHARE: f64 = 0.1;
+
+/// A prior with a smaller leave-one-out error, relative to the standard deviation, is kept: a better one would change
+/// nothing that matters.
+const SETTLED: f64 = 3e-5;
+
+/// So many new blind residuals need no older ones beside them.
+const ENOUGH_BLIND: usize = 40;
+
+/// So many more points than parameters of the prior are needed for a search; with fewer, it would fit noise.
+const LEAST_SURPLUS: usize = 3;
 
 /// A larger design is expected to lower ½ ln of the mean square error by this.
 const EXPECTED_GAIN: f64 = 0.1;
@@ -51,8 +64,28 @@ const REFINEMENTS: usize = 3;
 /// The search for the prior ends when ½ ln of the mean square error falls by less, one per mille of the error.
 const LIMITS: Limits = Limits { iterations: 60, decrease: 1e-3 };
 
-/// Fits one component. `start` is the prior of a former, smaller design, from which the search goes on; the prior found
-/// comes back for the next.
+/// What the fit of a component on one design leaves for the next larger one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Learnt {
+    /// The prior that was best; the next search starts from it.
+    pub prior: Prior,
+    /// ½ ln of the mean square leave-one-out error, relative to the variance.
+    error: Option<f64>,
+    /// Number of points that chose the prior.
+    points: usize,
+    /// Blind residuals of the last points.
+    blind: Option<BlindResiduals>,
+}
+
+impl Learnt {
+    /// Before the first design.
+    pub fn nothing(inputs: usize) -> Self {
+        Self { prior: Prior::start(inputs), error: None, points: 0, blind: None }
+    }
+}
+
+/// Fits one component. `former` is what a smaller design taught, [`Learnt::nothing`] at first; what this one teaches comes
+/// back for the next.
 ///
 /// `response.values[i]` is the component at point i of `tables`, in its own unit.
 ///
@@ -64,8 +97,7 @@ const LIMITS: Limits = Limits { iterations: 60, decrease: 1e-3 };
 ///
 /// ```
 /// use pcc::design::NestedLatinHypercube;
-/// use pcc::fit::minimum_norm::fit;
-/// use pcc::fit::Prior;
+/// use pcc::fit::minimum_norm::{Learnt, fit};
 /// use pcc::polynomial::Family;
 /// use pcc::progress::Silent;
 /// use pcc::regression::{BasisTables, Response};
@@ -78,7 +110,7 @@ const LIMITS: Limits = Limits { iterations: 60, decrease: 1e-3 };
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(10); 2], 10);
 /// let response = Response { values: &values, resolution: 1e-13 };
 /// let settings = Smooth { max_degree: 10, s2_target: 0.999 };
-/// let (fitted, _) = fit(&tables, response, &settings, &Prior::start(2), &Silent)?;
+/// let (fitted, _) = fit(&tables, response, &settings, &Learnt::nothing(2), &Silent)?;
 /// assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8);
 /// # Ok::<(), pcc::progress::Interrupted>(())
 /// ```
@@ -86,20 +118,22 @@ pub fn fit(
     tables: &BasisTables,
     response: Response<'_>,
     settings: &Smooth,
-    start: &Prior,
+    former: &Learnt,
     observer: &dyn Observer,
-) -> Result<(Fitted, Prior), Interrupted> {
-    let inputs = start.inputs();
+) -> Result<(Fitted, Learnt), Interrupted> {
+    let inputs = former.prior.inputs();
     let Some(variance) = response.variance() else {
-        return Ok((Fitted::constant(inputs, response.values), start.clone()));
+        return Ok((Fitted::constant(inputs, response.values), former.clone()));
     };
     let problem = Problem::new(tables, response, variance.sqrt(), settings.max_degree);
-    let prior = problem.best_prior(start, observer)?;
+    let (prior, error) = problem.best_prior(former, observer)?;
     observer.check()?;
     let Some(solution) = problem.solve(&prior) else {
-        return Ok((Fitted::constant(inputs, response.values), start.clone()));
+        let mean = Fitted::mean(tables, inputs, response.values, variance, observer)?;
+        return Ok((mean, Learnt::nothing(inputs)));
     };
-    let blind_residuals = problem.blind_residuals(start);
+    let blind = problem.blind_residuals(former, error);
+    let learnt = Learnt { prior, error: Some(error), points: response.values.len(), blind };
     let (indices, mut coefficients, residuals, left_out) = solution.without_negligible_terms(problem.resolution);
     coefficients.iter_mut().for_each(|coefficient| *coefficient *= problem.scale);
     coefficients[0] += problem.mean;
@@ -110,12 +144,12 @@ pub fn fit(
         indices: IndexSet::from_unsorted(indices),
         coefficients,
         errors: Some(ErrorMeasures { r2: 1.0 - mean_square(&residuals), s2: Some(s2), corrected_s2: None }),
-        blind_residuals,
+        blind_residuals: learnt.blind.clone(),
         leave_one_out_residuals: Some(left_out.iter().map(|residual| residual * problem.scale).collect()),
         degree,
         stop: if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted },
     };
-    Ok((fitted, prior))
+    Ok((fitted, learnt))
 }
 
 /// Standardized values on a design.
@@ -153,39 +187,58 @@ impl<'a> Problem<'a> {
         }
     }
 
-    /// The prior with the smallest leave-one-out error found from `start`. A start that led into a side valley on a
-    /// smaller design is recognised by an error that no longer falls; then the search is repeated from the neutral prior.
-    fn best_prior(&self, start: &Prior, observer: &dyn Observer) -> Result<Prior, Interrupted> {
-        let found = self.search(start, observer)?;
-        if start.error().is_none_or(|before| found.1 < before - EXPECTED_GAIN) {
-            return Ok(found.0.found(found.1, self.values.len()));
+    /// The prior with the smallest leave-one-out error found from the former one, and that error. A start that led into a
+    /// side valley on a smaller design is recognised by an error that no longer falls; then the search is repeated from the
+    /// neutral prior.
+    fn best_prior(&self, former: &Learnt, observer: &dyn Observer) -> Result<(Prior, f64), Interrupted> {
+        if self.values.len() < former.prior.parameters().len() + LEAST_SURPLUS {
+            let neutral = Prior::start(former.prior.inputs());
+            return Ok((neutral.clone(), self.error_of(&neutral)));
         }
-        let neutral = self.search(&Prior::start(start.inputs()), observer)?;
-        let (prior, error) = if neutral.1 < found.1 { neutral } else { found };
-        Ok(prior.found(error, self.values.len()))
+        if former.points >= PRIOR_POINTS || former.error.is_some_and(|error| error < SETTLED.ln()) {
+            return Ok((former.prior.clone(), self.error_of(&former.prior)));
+        }
+        let found = self.search(&former.prior, observer)?;
+        if former.error.is_none_or(|before| found.1 < before - EXPECTED_GAIN) {
+            return Ok(found);
+        }
+        let neutral = self.search(&Prior::start(former.prior.inputs()), observer)?;
+        Ok(if neutral.1 < found.1 { neutral } else { found })
     }
 
-    /// What the prior of a former design, chosen without the points that are new here, misses at each of them.
-    fn blind_residuals(&self, former: &Prior) -> Option<BlindResiduals> {
-        let first = former.points();
+    /// What the prior of a former design, chosen without the points that are new here, misses at each of them. Residuals
+    /// of points that were new on designs before are kept while there are few, scaled by how far errors fell since.
+    fn blind_residuals(&self, former: &Learnt, error: f64) -> Option<BlindResiduals> {
+        let first = former.points;
         if first == 0 || first >= self.values.len() {
-            return None;
+            return former.blind.clone();
         }
-        let solution = self.solve(former)?;
-        let values = solution.left_out.iter().skip(first).map(|residual| residual * self.scale).collect();
-        Some(BlindResiduals { first, values })
+        let solution = self.solve(&former.prior)?;
+        let new = solution.left_out.iter().skip(first).map(|residual| residual * self.scale);
+        if new.len() >= ENOUGH_BLIND {
+            return Some(BlindResiduals { first, values: new.collect() });
+        }
+        let fallen = former.error.map_or(1.0, |before| (error - before).exp());
+        let mut blind = former.blind.clone().unwrap_or(BlindResiduals { first, values: Vec::new() });
+        blind.values.iter_mut().for_each(|residual| *residual *= fallen);
+        blind.values.extend(new);
+        Some(blind)
     }
 
-    /// A local minimum and ½ ln of the mean square error there.
+    /// A local minimum, rounded, and ½ ln of the mean square error there.
     fn search(&self, start: &Prior, observer: &dyn Observer) -> Result<(Prior, f64), Interrupted> {
-        let mut error = f64::INFINITY;
         let lowest = minimize(start.parameters(), &Prior::bounds(start.inputs()), LIMITS, |parameters| {
             observer.check()?;
-            let found = self.leave_one_out_error(&Prior::with(parameters));
-            error = found.as_ref().map_or(error, |(value, _)| value.min(error));
-            Ok(found)
+            Ok(self.leave_one_out_error(&Prior::with(parameters)))
         })?;
-        Ok((Prior::rounded(&lowest), error))
+        let prior = Prior::rounded(&lowest);
+        let error = self.error_of(&prior);
+        Ok((prior, error))
+    }
+
+    /// ½ ln of the mean square error, infinite if it cannot be computed.
+    fn error_of(&self, prior: &Prior) -> f64 {
+        self.leave_one_out_error(prior).map_or(f64::INFINITY, |(error, _)| error)
     }
 
     /// ½ ln of the mean of Δ², no smaller than rounding, with its derivatives by the parameters of the prior.
@@ -196,7 +249,7 @@ impl<'a> Problem<'a> {
         let samples = self.values.len().min(PRIOR_POINTS);
         let values = self.values.rows(0, samples);
         let kernel = prior.kernel(self.tables, samples, self.degree);
-        let inverse = inverse(&with_nugget(&kernel.matrix))?;
+        let (inverse, nugget) = regularized_inverse(&kernel.matrix)?;
         let weighted = &inverse * values;
         let diagonal = inverse.diagonal();
         let left_out = weighted.component_div(&diagonal);
@@ -209,7 +262,8 @@ impl<'a> Problem<'a> {
         }
         let mut by_matrix = scaled * inverse;
         by_matrix.ger(-1.0, &direct, &weighted, 1.0);
-        let nugget_part = NUGGET * by_matrix.trace() / samples as f64;
+        // ν is proportional to the trace of K.
+        let nugget_part = nugget / kernel.matrix.trace() * by_matrix.trace();
         for k in 0..samples {
             by_matrix[(k, k)] += nugget_part;
         }
@@ -230,8 +284,8 @@ impl<'a> Problem<'a> {
             column.scale_mut(deviation);
         }
         let kernel = &weighted * weighted.transpose();
-        let root_nugget = nugget(&kernel).sqrt();
-        let inverse = inverse(&with_nugget(&kernel))?;
+        let (inverse, nugget) = regularized_inverse(&kernel)?;
+        let root_nugget = nugget.sqrt();
         let (mut x, mut t) = (DVector::zeros(indices.len()), DVector::zeros(samples));
         for _ in 0..=REFINEMENTS {
             let rest = &self.values - &weighted * &x - &t * root_nugget;
@@ -273,16 +327,15 @@ impl Solution {
     }
 }
 
-/// ν for a kernel matrix.
-fn nugget(kernel: &DMatrix<f64>) -> f64 {
-    NUGGET * kernel.trace() / kernel.nrows() as f64
-}
-
-fn with_nugget(kernel: &DMatrix<f64>) -> DMatrix<f64> {
-    let nugget = nugget(kernel);
-    let mut matrix = kernel.clone();
-    for k in 0..matrix.nrows() {
-        matrix[(k, k)] += nugget;
-    }
-    matrix
+/// (K + νI)⁻¹ with the smallest ν that allows it, and ν.
+fn regularized_inverse(kernel: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+    let mean = kernel.trace() / kernel.nrows() as f64;
+    (0..NUGGETS).find_map(|k| {
+        let nugget = NUGGET * 10f64.powi(k) * mean;
+        let mut matrix = kernel.clone();
+        for i in 0..matrix.nrows() {
+            matrix[(i, i)] += nugget;
+        }
+        Some((inverse(&matrix)?, nugget))
+    })
 }

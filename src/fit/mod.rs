@@ -9,8 +9,8 @@ pub mod stepwise;
 pub use prior::Prior;
 
 use crate::index_set::{IndexSet, MultiIndex};
-use crate::progress::Interrupted;
-use crate::regression::{ActiveBasis, ErrorMeasures};
+use crate::progress::{Interrupted, Observer};
+use crate::regression::{ActiveBasis, BasisTables, ErrorMeasures};
 
 /// Why a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -68,6 +68,18 @@ impl Fitted {
             degree,
             stop,
         })
+    }
+
+    /// The mean of values that vary but could not be fitted: S² below zero says so.
+    fn mean(
+        tables: &BasisTables,
+        inputs: usize,
+        values: &[f64],
+        variance: f64,
+        observer: &dyn Observer,
+    ) -> Result<Self, Interrupted> {
+        let basis = ActiveBasis::constant(tables, inputs, values, variance, observer)?;
+        Self::new(&basis, 0, Stop::DesignExhausted)
     }
 
     /// The mean of values that do not vary.

@@ -136,7 +136,9 @@ pub fn fit(
             }
         }
     }
-    let Some((validation, set)) = best else { return Ok(Fitted::constant(inputs, response.values)) };
+    let Some((validation, set)) = best.filter(|(validation, _)| validation.error.is_finite()) else {
+        return Fitted::mean(tables, inputs, response.values, variance, observer);
+    };
     let columns = tables.columns(&set);
     let mut path = Path::new(&columns, response.values);
     while path.terms.len() < validation.terms && path.step().is_some() {}
@@ -178,7 +180,7 @@ impl CrossValidation {
         let (terms, error) = (1..=longest)
             .map(|terms| (terms, error(terms)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or((1, f64::MAX));
+            .unwrap_or((1, f64::INFINITY));
         let mut residuals = vec![0.0; values.len()];
         for (fold, path) in by_fold.iter().enumerate().filter(|_| longest > 0) {
             let points = (fold..values.len()).step_by(folds);

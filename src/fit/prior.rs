@@ -28,10 +28,6 @@ const NEGLIGIBLE: f64 = 1e-14;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     parameters: Vec<f64>,
-    /// ½ ln of the mean square leave-one-out error of the design it was found on, relative to the variance.
-    error: Option<f64>,
-    /// Number of points of that design.
-    points: usize,
 }
 
 /// The matrix K of a prior on a design, with what its derivatives need.
@@ -49,19 +45,19 @@ impl Prior {
     pub fn start(inputs: usize) -> Self {
         let mut parameters = vec![1.2; inputs];
         parameters.push(-1.0);
-        Self { parameters, error: None, points: 0 }
+        Self { parameters }
     }
 
     /// A prior with these parameters, moved into their ranges and rounded.
     pub(super) fn rounded(parameters: &[f64]) -> Self {
         let bounds = Self::bounds(parameters.len() - 1);
         let round = |(&x, (lower, upper)): (&f64, (f64, f64))| ((x / GRAIN).round() * GRAIN).clamp(lower, upper);
-        Self { parameters: parameters.iter().zip(bounds).map(round).collect(), error: None, points: 0 }
+        Self { parameters: parameters.iter().zip(bounds).map(round).collect() }
     }
 
     /// A prior with exactly these parameters, for the search.
     pub(super) fn with(parameters: &[f64]) -> Self {
-        Self { parameters: parameters.to_vec(), error: None, points: 0 }
+        Self { parameters: parameters.to_vec() }
     }
 
     pub(super) fn parameters(&self) -> &[f64] {
@@ -73,18 +69,6 @@ impl Prior {
         let mut bounds = vec![DECAY; inputs];
         bounds.push(WEIGHT);
         bounds
-    }
-
-    pub(super) fn found(self, error: f64, points: usize) -> Self {
-        Self { error: Some(error), points, ..self }
-    }
-
-    pub(super) fn points(&self) -> usize {
-        self.points
-    }
-
-    pub(super) fn error(&self) -> Option<f64> {
-        self.error
     }
 
     pub(super) fn inputs(&self) -> usize {
@@ -142,7 +126,7 @@ impl Prior {
         kernel
     }
 
-    /// The `count` multi-indices with the largest prior variance, or somewhat more if several are equal, with degrees up to
+    /// The `count` multi-indices with the largest prior variance, the canonically first among equals, with degrees up to
     /// `degree` in each input, in canonical order.
     pub(super) fn likeliest(&self, count: usize, degree: u16) -> Vec<MultiIndex> {
         let mut walk = Walk::new(self, degree);
@@ -155,10 +139,16 @@ impl Prior {
             let middle = 0.5 * (low + high);
             if walk.above(middle, count).len() > count { low = middle } else { high = middle }
         }
-        let mut members = walk.above(low, usize::MAX / 2);
-        if members.len() > 2 * count {
-            members = walk.above(high, usize::MAX / 2);
-        }
+        let mut members = walk.above(low, MOST_TIES.max(2 * count));
+        let log_variance = |alpha: &MultiIndex| -> f64 {
+            alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum()
+        };
+        // {0} belongs to every expansion, whatever its rank.
+        members.sort_by(|a, b| {
+            let rank = |alpha: &MultiIndex| if alpha.is_constant() { f64::INFINITY } else { log_variance(alpha) };
+            rank(b).total_cmp(&rank(a)).then_with(|| a.cmp(b))
+        });
+        members.truncate(count.max(1));
         members.sort_unstable();
         members
     }
@@ -166,6 +156,9 @@ impl Prior {
 
 /// Prior variances below e^LOWEST are never of use.
 const LOWEST: f64 = -200.0;
+
+/// Equally likely indices that are considered at most.
+const MOST_TIES: usize = 100_000;
 
 /// Resolution of the threshold of ln s_α.
 const THRESHOLD_GRAIN: f64 = 1e-6;

@@ -1,11 +1,13 @@
 //! The inverse of a symmetric positive definite matrix, mostly by matrix products.
 //!
-//! With A = LLᵀ split in halves, W = L⁻¹ follows from the halves:
+//! A = LLᵀ by Cholesky's algorithm, block column by block column; then W = L⁻¹ by halves,
 //!
-//! W₁₁ from A₁₁, L₂₁ = A₂₁W₁₁ᵀ, W₂₂ from A₂₂ − L₂₁L₂₁ᵀ, W₂₁ = −W₂₂L₂₁W₁₁, and A⁻¹ = WᵀW.
+//! W₁₁ = L₁₁⁻¹, W₂₂ = L₂₂⁻¹, W₂₁ = −W₂₂L₂₁W₁₁, and A⁻¹ = WᵀW.
 //!
-//! Nearly all operations are products of large blocks, for which libraries reach the speed of the processor; a fit
-//! inverts thousands of matrices with some hundred rows.
+//! Most operations are products of large blocks, for which libraries reach the speed of the processor; a fit inverts
+//! thousands of matrices with some hundred rows. The rows below a diagonal block are divided by it by substitution, which
+//! is backward stable: products with its inverse would be faster still, but fail on matrices near the limit of positive
+//! definiteness in double precision, which kernels are.
 
 use nalgebra::DMatrix;
 
@@ -27,58 +29,60 @@ const SMALL: usize = 24;
 /// assert_eq!(inverse(&-matrix), None);
 /// ```
 pub fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let factor = inverse_factor(matrix.clone())?;
-    Some(factor.transpose() * &factor)
+    let inverse = triangular_inverse(&cholesky(matrix.clone())?);
+    Some(inverse.transpose() * &inverse)
 }
 
-/// W = L⁻¹ with A = LLᵀ.
-fn inverse_factor(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+/// The lower triangular L with A = LLᵀ; what is above its diagonal has no meaning.
+fn cholesky(mut matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let size = matrix.nrows();
+    for start in (0..size).step_by(SMALL) {
+        let end = size.min(start + SMALL);
+        for k in start..end {
+            let pivot = matrix[(k, k)];
+            if !(pivot > 0.0 && pivot.is_finite()) {
+                return None;
+            }
+            // Column k below the diagonal, then its share of the later columns of this block.
+            let root = pivot.sqrt();
+            matrix.view_mut((k, k), (size - k, 1)).unscale_mut(root);
+            let column = matrix.view((k + 1, k), (size - k - 1, 1)).into_owned();
+            for later in k + 1..end {
+                let factor = column[later - k - 1];
+                let rows = size - later;
+                let share = column.rows(later - k - 1, rows);
+                matrix.view_mut((later, later), (rows, 1)).zip_apply(&share, |entry, part| *entry -= factor * part);
+            }
+        }
+        let panel = matrix.view((end, start), (size - end, end - start)).into_owned();
+        matrix.view_mut((end, end), (size - end, size - end)).gemm(-1.0, &panel, &panel.transpose(), 1.0);
+    }
+    Some(matrix)
+}
+
+/// L⁻¹ of a lower triangular matrix with a diagonal that is not zero.
+fn triangular_inverse(factor: &DMatrix<f64>) -> DMatrix<f64> {
+    let size = factor.nrows();
+    let mut inverse = DMatrix::zeros(size, size);
     if size <= SMALL {
-        return small_inverse_factor(matrix);
+        for column in 0..size {
+            inverse[(column, column)] = 1.0 / factor[(column, column)];
+            for row in column + 1..size {
+                let sum: f64 = (column..row).map(|k| factor[(row, k)] * inverse[(k, column)]).sum();
+                inverse[(row, column)] = -sum / factor[(row, row)];
+            }
+        }
+        return inverse;
     }
     let half = size / 2;
     let rest = size - half;
-    let first = inverse_factor(matrix.view((0, 0), (half, half)).into_owned())?;
-    let below = matrix.view((half, 0), (rest, half)) * first.transpose();
-    let mut schur = matrix.view((half, half), (rest, rest)).into_owned();
-    schur.gemm(-1.0, &below, &below.transpose(), 1.0);
-    let second = inverse_factor(schur)?;
-    let mut factor = DMatrix::zeros(size, size);
-    factor.view_mut((half, 0), (rest, half)).copy_from(&(-(&second * (below * &first))));
-    factor.view_mut((0, 0), (half, half)).copy_from(&first);
-    factor.view_mut((half, half), (rest, rest)).copy_from(&second);
-    Some(factor)
-}
-
-/// The same by Cholesky's algorithm and forward substitution.
-fn small_inverse_factor(mut matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let size = matrix.nrows();
-    for k in 0..size {
-        let pivot = matrix[(k, k)];
-        if !(pivot > 0.0 && pivot.is_finite()) {
-            return None;
-        }
-        let root = pivot.sqrt();
-        for i in k..size {
-            matrix[(i, k)] /= root;
-        }
-        for j in k + 1..size {
-            let factor = matrix[(j, k)];
-            for i in j..size {
-                matrix[(i, j)] -= factor * matrix[(i, k)];
-            }
-        }
-    }
-    let mut inverse = DMatrix::zeros(size, size);
-    for column in 0..size {
-        inverse[(column, column)] = 1.0 / matrix[(column, column)];
-        for row in column + 1..size {
-            let sum: f64 = (column..row).map(|k| matrix[(row, k)] * inverse[(k, column)]).sum();
-            inverse[(row, column)] = -sum / matrix[(row, row)];
-        }
-    }
-    Some(inverse)
+    let first = triangular_inverse(&factor.view((0, 0), (half, half)).into_owned());
+    let second = triangular_inverse(&factor.view((half, half), (rest, rest)).into_owned());
+    let below = -(&second * (factor.view((half, 0), (rest, half)) * &first));
+    inverse.view_mut((0, 0), (half, half)).copy_from(&first);
+    inverse.view_mut((half, half), (rest, rest)).copy_from(&second);
+    inverse.view_mut((half, 0), (rest, half)).copy_from(&below);
+    inverse
 }
 
 #[cfg(test)]

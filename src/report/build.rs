@@ -1,12 +1,15 @@
 //! What a build spent and how well each component is fitted.
 
-use super::table::{Align, Table, count};
-use crate::surrogate::{StopReason, Surrogate};
+use super::table::{Align, Table, count, significant};
+use crate::surrogate::{SettingValue, StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
 /// S² below which a component is called poorly fitted.
 const POOR: f64 = 0.9;
+
+/// Estimated relative error of the proportion from which a study that set no tolerance is warned.
+const LARGE_ERROR: f64 = 0.05;
 
 /// The result of a build.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -89,6 +92,28 @@ impl FitReport {
         warnings
     }
 
+    /// The same, and what is known of the proportion.
+    pub fn warnings_of(surrogate: &Surrogate) -> Vec<String> {
+        let mut warnings = Self::warnings(&Self::of(surrogate));
+        let asked = surrogate.training.settings.iter().find(|setting| setting.key == "proportion_tolerance");
+        let tolerance = asked.and_then(|setting| match setting.value {
+            SettingValue::Number(tolerance) => Some(tolerance),
+            _ => None,
+        });
+        match (surrogate.decision.proportion_error, tolerance) {
+            (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
+                "the proportion may be off by {} % of itself; raise design.maximum, or list modes in spectrum.modes that \
+                 decide stability, if some are left out",
+                significant(100.0 * error, 2)
+            )),
+            (None, Some(_)) => warnings.push(
+                "the error of the proportion could not be estimated: it takes two design levels, and stable points".to_owned(),
+            ),
+            _ => {}
+        }
+        warnings
+    }
+
     /// A table of fits.
     pub fn table(fits: &[Self]) -> Table {
         let right = Align::Right;
@@ -127,7 +152,7 @@ impl BuildReport {
             seed: surrogate.training.seed,
             direct_computations: surrogate.training.counts.direct_computations,
             levels: surrogate.training.levels.clone(),
-            warnings: FitReport::warnings(&FitReport::of(surrogate)),
+            warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
             elapsed_seconds,
         }

@@ -90,6 +90,9 @@ impl fmt::Display for CertifyReport {
         writeln!(f, "{}: {} fresh model runs, {:.2} s\n", self.study, count(new.samples), self.elapsed_seconds)?;
         writeln!(f, "  verified bound         {:.3} % to {:.3} % stable", 100.0 * new.lower, 100.0 * new.upper)?;
         writeln!(f, "  level                  {}, whatever the surrogate", new.level)?;
+        if !new.same_problem {
+            writeln!(f, "  of another problem     than the surrogate was built for: eval does not show this bound")?;
+        }
         writeln!(
             f,
             "  disagreement           {} falsely stable, {} falsely unstable",

@@ -143,7 +143,7 @@ impl EvalReport {
         let stable = summary.stable_proportion();
         report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, report.sureness.interval);
         report.sensitivity = Some(SensitivityReport::new(surrogate.inputs.names(), indices));
-        report.warnings = FitReport::warnings(&FitReport::of(surrogate));
+        report.warnings = FitReport::warnings_of(surrogate);
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
         report

@@ -120,7 +120,7 @@ impl InspectReport {
             seed: surrogate.training.seed,
             modes: surrogate.modes(),
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
-            warnings: FitReport::warnings(&FitReport::of(surrogate)),
+            warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
             estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),

@@ -240,7 +240,10 @@ impl Lines<'_> {
         };
         let s2_target = self.number("fit.s2_target", raw.s2_target, defaults::S2_TARGET, in_share, share)?;
         let proportion_tolerance = match raw.proportion_tolerance {
-            Some(value) => Some(self.number("fit.proportion_tolerance", Some(value), 1.0, in_share, share)?),
+            Some(value) => {
+                let (resolved, expected) = (|value| (1e-5..=1.0).contains(&value), "a number from 1e-5 to 1");
+                Some(self.number("fit.proportion_tolerance", Some(value), 1.0, expected, resolved)?)
+            }
             None => (target == Target::Invariants).then_some(defaults::PROPORTION_TOLERANCE),
         };
         let smooth = Smooth { max_degree, s2_target };

@@ -25,8 +25,14 @@ pub(in super::super) fn certify(context: &Context, options: &Certify) -> anyhow:
              the study it was built from, or pass --force to certify it against this one all the same"
         );
     }
-    if surrogate.certificates.iter().any(|certificate| certificate.seed == options.seed) {
+    let problem = study.problem_hash();
+    if surrogate.certificates.iter().any(|known| known.seed == options.seed && known.problem_hash == problem) {
         bail!("{file}: has a certificate of seed {} already; choose another with --seed", options.seed);
+    }
+    if study.inputs != surrogate.inputs {
+        bail!(
+            "{source}: has other inputs than {file}; even with --force they must be the same, in order and distribution"
+        );
     }
     let output = options.output.as_ref().unwrap_or(&options.surrogate);
     let format = options.output.as_ref().map_or(artifact.format, |path| Format::of_path(path));

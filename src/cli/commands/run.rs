@@ -8,6 +8,7 @@ use super::eval::sample;
 use super::{keep_other_files, read_study};
 use crate::artifact::Format;
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table, count};
+use crate::spectrum::Target;
 use crate::study::Study;
 use crate::surrogate::Surrogate;
 use anyhow::Context as _;
@@ -37,17 +38,27 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
     std::fs::create_dir_all(&options.output)
         .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
+    let method = method_name(&study);
     let (surrogate, build, compare) = build_and_compare(context, options, study, &source)?;
     let eval = sample(context, &surrogate, EVAL_SAMPLES, seed)
         .with_context(|| format!("after the surrogate was written to {}", build.file))?;
-    let mut methods = vec![MethodRow::new("invariants", &build, &compare)];
+    let mut methods = vec![MethodRow::new(method, &build, &compare)];
     if options.study.is_none() {
         let papers = Study::from_toml(PAPERS_STUDY).context("the built-in study by the paper's method")?;
+        let method = method_name(&papers);
         let (_, build, compare) = build_and_compare(context, options, papers, &source)?;
-        methods.push(MethodRow::new("eigenvalue components", &build, &compare));
+        methods.push(MethodRow::new(method, &build, &compare));
     }
     context.print(&RunReport { build, eval, compare, methods })?;
     Ok(Ending::Done)
+}
+
+/// What a study expands, in words.
+fn method_name(study: &Study) -> &'static str {
+    match study.spectrum.target {
+        Target::Eigenvalues => "eigenvalue components",
+        Target::Invariants => "invariants",
+    }
 }
 
 /// Builds the surrogate of `study` into the output folder and compares it with the model.
