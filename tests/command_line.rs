@@ -58,7 +58,7 @@ macro_rules! assert_output {
 #[test]
 fn help_of_every_command() {
     let folder = workplace();
-    let commands = ["run", "build", "eval", "reference", "compare", "inspect", "convert", "completions"];
+    let commands = ["run", "build", "eval", "reference", "compare", "certify", "inspect", "convert", "completions"];
     let mut text = output(folder.path(), &["--help"]);
     for command in commands {
         text.push_str(&format!("\n=== {command} ===\n{}", output(folder.path(), &["help", command])));
@@ -390,7 +390,7 @@ fn poor_fits_are_flagged_wherever_the_surrogate_is_used() {
         let text = output(folder.path(), arguments);
         assert!(text.contains("warning: re_3 is "), "{arguments:?}: {text}");
     }
-    assert!(output(folder.path(), &["eval", "poor.pcc", "-n", "100"]).contains("judged by modes 1, 3 alone"));
+    assert!(output(folder.path(), &["eval", "poor.pcc", "-n", "100"]).contains("judged by modes 1, 3"));
 }
 
 #[test]
@@ -513,5 +513,109 @@ fn interruption_ends_with_130_and_no_file() {
         assert!(interrupted.success(), "{arguments:?} had ended before");
         assert_eq!(child.wait().unwrap().code(), Some(130), "{arguments:?}");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), before, "{arguments:?}");
+    }
+}
+
+/// A folder with the r = 2 study by invariants and its surrogate.
+fn invariants_workplace() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("study.toml"), text("surrogates/clutch-r2.toml")).unwrap();
+    fs::copy(repository("surrogates/clutch-r2.pcc"), folder.path().join("surrogate.pcc")).unwrap();
+    folder
+}
+
+#[test]
+fn certificates_are_added_and_shown() {
+    let folder = invariants_workplace();
+    let certify = ["certify", "surrogate.pcc", "--study", "study.toml", "-m", "200"];
+    assert_output!("certify", output(folder.path(), &certify));
+    let other = [&certify[..], &["--seed", "2", "-o", "both.json"]].concat();
+    let text = output(folder.path(), &other);
+    assert!(text.contains("earlier certificates"), "{text}");
+    let inspected: serde_json::Value =
+        serde_json::from_str(&output(folder.path(), &["inspect", "both.json", "--json"])).unwrap();
+    let seeds: Vec<_> = inspected["certificates"].as_array().unwrap().iter().map(|c| c["seed"].clone()).collect();
+    assert_eq!(seeds, [1, 2]);
+    let report: serde_json::Value =
+        serde_json::from_str(&output(folder.path(), &["eval", "both.json", "-n", "1000", "--json"])).unwrap();
+    let bound = &report["verified_bound"];
+    assert_eq!((bound["samples"].as_u64(), bound["certificates"].as_u64()), (Some(200), Some(2)));
+    assert!(bound["lower"].as_f64() < report["stable_proportion"].as_f64());
+    for line in ["sampling interval", "surrogate band", "verified bound"] {
+        assert!(output(folder.path(), &["eval", "both.json", "-n", "1000"]).contains(line), "{line}");
+    }
+}
+
+#[test]
+fn certificates_that_would_mislead_are_refused() {
+    let folder = invariants_workplace();
+    let other = text("surrogates/clutch-r2.toml").replace("[inputs]", "[model.constants]\nplate_mass = 41.0\n[inputs]");
+    fs::write(folder.path().join("other.toml"), other).unwrap();
+    let before = fs::read(folder.path().join("surrogate.pcc")).unwrap();
+    let of_other = ["certify", "surrogate.pcc", "--study", "other.toml", "-m", "20"];
+    let message = refusal(folder.path(), &of_other);
+    assert!(message.contains("asks another question") && message.contains("--force"), "{message}");
+    assert_eq!(fs::read(folder.path().join("surrogate.pcc")).unwrap(), before, "nothing was written");
+    let forced = output(folder.path(), &[&of_other[..], &["--force"]].concat());
+    assert!(forced.contains("of another problem"), "{forced}");
+    let text = output(folder.path(), &["eval", "surrogate.pcc", "-n", "1000"]);
+    assert!(text.contains("verified bound         none"), "a bound of another problem is not shown: {text}");
+    let own = ["certify", "surrogate.pcc", "--study", "study.toml", "-m", "20"];
+    output(folder.path(), &own);
+    let message = refusal(folder.path(), &own);
+    assert!(message.contains("has a certificate of seed 1 already"), "{message}");
+    let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--study", "study.toml", "-m", "0"]);
+    assert!(message.contains("use at least 1"), "{message}");
+}
+
+#[test]
+fn critical_values_follow_the_answer() {
+    let folder = invariants_workplace();
+    let critical = ["eval", "surrogate.pcc", "-n", "20000", "--critical", "mu", "--json"];
+    let report: serde_json::Value = serde_json::from_str(&output(folder.path(), &critical)).unwrap();
+    let quantiles = report["critical"]["quantiles"].as_array().unwrap();
+    assert_eq!(quantiles.len(), 7);
+    // With two inputs, clutches squeal from a friction coefficient of just below 0.1.
+    assert!(quantiles.iter().all(|q| (0.098..0.1).contains(&q["value"].as_f64().unwrap())), "{quantiles:?}");
+    assert!(output(folder.path(), &critical[..6]).contains("critical mu: the smallest value"));
+    let message = refusal(folder.path(), &["eval", "surrogate.pcc", "-n", "10", "--critical", "nu"]);
+    assert!(message.contains("no such input; it has mu, k_p"), "{message}");
+}
+
+#[test]
+fn studies_by_invariants_that_cannot_be_built_say_why() {
+    let folder = invariants_workplace();
+    let study = text("surrogates/clutch-r2.toml");
+    let mut listing = String::new();
+    let cases = [
+        ("a list that splits a group", study.replace("\"invariants\"", "\"invariants\"\nmodes = [1, 3]")),
+        (
+            "a mode near the real axis",
+            study
+                .replace("mu      = {", "c_f = {")
+                .replace("upper = 0.5", "upper = 4e3")
+                .replace("[inputs]", "[model.constants]\nk_f = 2e4\n[inputs]"),
+        ),
+        ("a key of another method", format!("{study}[fit]\nq_norm = 0.5\n")),
+        ("an unknown method", format!("{study}[fit]\nmethod = \"lasso\"\n")),
+        ("a tolerance too small to be estimated", format!("{study}[fit]\nproportion_tolerance = 1e-9\n")),
+        ("an unknown target", study.replace("\"invariants\"", "\"invariant\"")),
+    ];
+    for (name, text) in cases {
+        fs::write(folder.path().join("bad.toml"), text).unwrap();
+        listing.push_str(&format!("{name}:\n{}", refusal(folder.path(), &["build", "bad.toml"])));
+    }
+    assert_output!("invariants_refused", listing);
+}
+
+/// A surrogate that forgets the mode that squeals is not believed.
+#[test]
+fn a_list_without_the_unstable_mode_is_flagged() {
+    let folder = invariants_workplace();
+    let study = text("surrogates/clutch-r2.toml").replace("\"invariants\"", "\"invariants\"\nmodes = [1, 2]");
+    fs::write(folder.path().join("blind.toml"), study.replace("clutch-r2", "blind")).unwrap();
+    for arguments in [&["build", "blind.toml"][..], &["eval", "blind.pcc", "-n", "1000"], &["inspect", "blind.pcc"]] {
+        let text = output(folder.path(), arguments);
+        assert!(text.contains("warning: the proportion may be off by"), "{arguments:?}: {text}");
     }
 }

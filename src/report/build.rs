@@ -11,6 +11,9 @@ const POOR: f64 = 0.9;
 /// Estimated relative error of the proportion from which a study that set no tolerance is warned.
 const LARGE_ERROR: f64 = 0.05;
 
+/// Shares of the variance above this are shown by what they leave.
+const ALMOST_ONE: f64 = 1.0 - 5e-6;
+
 /// The result of a build.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BuildReport {
@@ -126,7 +129,11 @@ impl FitReport {
             ("S² corrected", right),
             ("search ended at", Align::Left),
         ]);
-        let share = |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{share:.5}"));
+        let share = |share: Option<f64>| match share {
+            None => "–".to_owned(),
+            Some(share) if share < 1.0 && share > ALMOST_ONE => format!("1 − {:.0e}", 1.0 - share),
+            Some(share) => format!("{share:.5}"),
+        };
         for fit in fits {
             table.row([
                 fit.name.clone(),

@@ -5,6 +5,9 @@ use crate::reference::Comparison;
 use serde::Serialize;
 use std::fmt;
 
+/// Relative errors below this are not worth digits, in percent.
+const SMALLEST_ERROR: f64 = 1e-4;
+
 /// Surrogate and model on the same points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompareReport {
@@ -102,9 +105,13 @@ impl CompareReport {
     }
 }
 
-/// Three digits, or a dash where an error has no meaning.
+/// Three digits, a bound below those that mean something, or a dash where an error has no meaning.
 fn percentage(error: Option<f64>) -> String {
-    error.map_or("–".to_owned(), |error| significant(error, 3))
+    match error {
+        None => "–".to_owned(),
+        Some(error) if error > 0.0 && error < SMALLEST_ERROR => format!("< {SMALLEST_ERROR}"),
+        Some(error) => significant(error, 3),
+    }
 }
 
 impl fmt::Display for CompareReport {
