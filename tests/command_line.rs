@@ -590,7 +590,7 @@ fn studies_by_invariants_that_cannot_be_built_say_why() {
     let cases = [
         ("a list that splits a group", study.replace("\"invariants\"", "\"invariants\"\nmodes = [1, 3]")),
         (
-            "a mode near the real axis",
+            "modes that stop oscillating",
             study
                 .replace("mu      = {", "c_f = {")
                 .replace("upper = 0.5", "upper = 4e3")

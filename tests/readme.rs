@@ -20,7 +20,7 @@ fn without_times(text: &str) -> String {
     for line in text.trim().lines() {
         let stable: Vec<&str> =
             line.split(", ").flat_map(|part| part.split(" in ")).filter(|part| !part.contains(" s")).collect();
-        let is_headline = line.contains(", seed ");
+        let is_headline = line.contains(", seed ") || line.ends_with(" s");
         kept.push_str(&if is_headline { stable.join(", ") } else { line.to_owned() });
         kept.push('\n');
     }

@@ -339,3 +339,121 @@ fn regularized_inverse(kernel: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
         Some((inverse(&matrix)?, nugget))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{NestedLatinHypercube, Samples};
+    use crate::polynomial::Family;
+    use crate::progress::Silent;
+
+    const DEGREE: u16 = 10;
+
+    fn samples(inputs: usize, sizes: &[usize]) -> Samples {
+        let mut design = NestedLatinHypercube::new(inputs, 3);
+        sizes.iter().for_each(|&size| design.grow_to(size));
+        design.samples(|_, u| 2.0 * u - 1.0)
+    }
+
+    fn tables(samples: &Samples) -> BasisTables {
+        BasisTables::new(samples, &vec![Family::Legendre.recurrence(DEGREE.into()); samples.dimension()], DEGREE.into())
+    }
+
+    fn settings() -> Smooth {
+        Smooth { max_degree: DEGREE, s2_target: 0.999 }
+    }
+
+    fn smooth(point: &[f64]) -> f64 {
+        (0.6 * point[0]).exp() / (1.5 + 0.4 * point[1]) + 0.1 * point.iter().sum::<f64>()
+    }
+
+    /// A = (K + νI)⁻¹: predictions without a point, by N explicit solutions.
+    #[test]
+    fn closed_form_residuals_equal_explicit_refits() {
+        let samples = samples(2, &[15]);
+        let tables = tables(&samples);
+        let values: Vec<f64> = samples.points().map(smooth).collect();
+        let problem = Problem::new(&tables, Response { values: &values, resolution: 0.0 }, 1.0, DEGREE);
+        let prior = Prior::start(2);
+        let kernel = prior.kernel(&tables, 15, DEGREE).matrix;
+        let (inverse, nugget) = regularized_inverse(&kernel).unwrap();
+        let closed = (&inverse * &problem.values).component_div(&inverse.diagonal());
+        for left in 0..15 {
+            let others: Vec<usize> = (0..15).filter(|&i| i != left).collect();
+            let mut matrix = kernel.select_rows(&others).select_columns(&others);
+            (0..14).for_each(|i| matrix[(i, i)] += nugget);
+            let weights = matrix.lu().solve(&problem.values.select_rows(&others)).unwrap();
+            let predicted = kernel.row(left).transpose().select_rows(&others).dot(&weights);
+            // The condition number of K, some 10¹⁰, times rounding.
+            assert!((problem.values[left] - predicted - closed[left]).abs() < 1e-5, "point {left}");
+        }
+    }
+
+    #[test]
+    fn gradient_is_that_of_the_leave_one_out_error() {
+        let samples = samples(3, &[25]);
+        let tables = tables(&samples);
+        let values: Vec<f64> = samples.points().map(smooth).collect();
+        let problem = Problem::new(&tables, Response { values: &values, resolution: 1e-12 }, 1.0, DEGREE);
+        let at = [0.9, 1.1, 1.6, -0.7];
+        let (_, gradient) = problem.leave_one_out_error(&Prior::with(&at)).unwrap();
+        for (k, slope) in gradient.iter().enumerate() {
+            let shifted = |step: f64| {
+                let mut moved = at;
+                moved[k] += step;
+                problem.leave_one_out_error(&Prior::with(&moved)).unwrap().0
+            };
+            let difference = (shifted(1e-4) - shifted(-1e-4)) / 2e-4;
+            assert!((slope - difference).abs() < 1e-4 * (1.0 + slope.abs()), "{k}: {slope} against {difference}");
+        }
+    }
+
+    #[test]
+    fn smooth_functions_are_found_from_fewer_runs_than_terms() {
+        let samples = samples(2, &[30]);
+        let values: Vec<f64> = samples.points().map(smooth).collect();
+        let response = Response { values: &values, resolution: 0.0 };
+        let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(2), &Silent).unwrap();
+        assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8 && fitted.stop == Stop::Accurate);
+        assert!(fitted.blind_residuals.is_none(), "a first design has chosen everything itself");
+    }
+
+    /// Many points of few inputs make K singular to working precision; the fit must not give up.
+    #[test]
+    fn designs_much_larger_than_the_basis_are_fitted_as_well() {
+        for size in [200, 500, 1000] {
+            let samples = samples(1, &[size]);
+            let values: Vec<f64> = samples.points().map(|x| (1.3 * x[0]).sin()).collect();
+            let response = Response { values: &values, resolution: 1e-13 };
+            let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(1), &Silent).unwrap();
+            assert_eq!(fitted.stop, Stop::Accurate, "{size} points");
+        }
+    }
+
+    #[test]
+    fn new_points_are_judged_by_the_prior_that_has_not_seen_them() {
+        let small = samples(2, &[20]);
+        let large = samples(2, &[20, 40]);
+        let values: Vec<f64> = large.points().map(smooth).collect();
+        let response = |values| Response { values, resolution: 0.0 };
+        let (_, learnt) =
+            fit(&tables(&small), response(&values[..20]), &settings(), &Learnt::nothing(2), &Silent).unwrap();
+        let (fitted, _) = fit(&tables(&large), response(&values), &settings(), &learnt, &Silent).unwrap();
+        let blind = fitted.blind_residuals.unwrap();
+        assert_eq!((blind.first, blind.values.len()), (20, 20));
+    }
+
+    /// Noise is not called accurate, however few points there are.
+    #[test]
+    fn noise_is_not_fitted() {
+        use crate::random::{Purpose, Stream};
+        let mut stream = Stream::new(1, Purpose::Evaluation, 0);
+        for size in [2, 3, 5, 10, 40] {
+            let samples = samples(2, &[size]);
+            let values: Vec<f64> = (0..size).map(|_| stream.next_unit()).collect();
+            let response = Response { values: &values, resolution: 0.0 };
+            let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(2), &Silent).unwrap();
+            assert_ne!(fitted.stop, Stop::Accurate, "{size} points: {:?}", fitted.errors);
+        }
+    }
+}

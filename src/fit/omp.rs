@@ -305,3 +305,49 @@ impl<'a> Path<'a> {
         Some(Step { candidate, coefficients, length, part })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::NestedLatinHypercube;
+    use crate::polynomial::Family;
+    use crate::progress::Silent;
+
+    const DEGREE: u16 = 8;
+
+    fn fitted(inputs: usize, size: usize, value: impl Fn(&[f64]) -> f64) -> Fitted {
+        let mut design = NestedLatinHypercube::new(inputs, 5);
+        design.grow_to(size);
+        let samples = design.samples(|_, u| 2.0 * u - 1.0);
+        let values: Vec<f64> = samples.points().map(value).collect();
+        let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); inputs];
+        let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
+        let candidates = Candidates::new(inputs, DEGREE, size).unwrap();
+        let settings = Smooth { max_degree: DEGREE, s2_target: 0.999 };
+        fit(&tables, Response { values: &values, resolution: 1e-13 }, &candidates, &settings, &Silent).unwrap()
+    }
+
+    #[test]
+    fn few_terms_among_many_inputs_are_found_exactly() {
+        let found = fitted(6, 60, |x| 2.0 + x[0] - 3.0 * x[2] * x[4] + 0.5 * x[5]);
+        assert_eq!((found.indices.len(), found.stop), (4, Stop::Accurate));
+    }
+
+    /// The error of the selected terms would fall to rounding; that of the folds does not.
+    #[test]
+    fn cross_validation_sees_the_selection_of_terms() {
+        let found = fitted(4, 40, |x| (3.0 * x[0] + 2.0 * x[1] - x[2] * x[3]).sin());
+        let errors = found.errors.unwrap();
+        assert!(errors.r2 > errors.s2.unwrap() + 0.01, "{errors:?}");
+        assert!(found.indices.len() < 30);
+    }
+
+    #[test]
+    fn designs_too_small_to_validate_give_the_mean() {
+        for size in [2, 3] {
+            let found = fitted(2, size, |x| x[0] + x[1] * x[1]);
+            let errors = found.errors.unwrap();
+            assert!(found.stop == Stop::DesignExhausted && errors.s2.unwrap() < 0.5, "{errors:?}");
+        }
+    }
+}
