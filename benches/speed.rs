@@ -14,7 +14,11 @@ use pcc::study::Study;
 use std::hint::black_box;
 
 const STUDY: &str = include_str!("../surrogates/clutch-r8-eigenvalues.toml");
-const SURROGATE: &[u8] = include_bytes!("../surrogates/clutch-r8-eigenvalues.pcc");
+const INVARIANTS: &str = include_str!("../surrogates/clutch-r8.toml");
+const SURROGATES: [(&str, &[u8]); 2] = [
+    ("clutch-r8-eigenvalues", include_bytes!("../surrogates/clutch-r8-eigenvalues.pcc")),
+    ("clutch-r8", include_bytes!("../surrogates/clutch-r8.pcc")),
+];
 const SAMPLES: u64 = 1_000_000;
 
 fn study() -> Study {
@@ -44,23 +48,27 @@ fn direct_computation(criterion: &mut Criterion) {
 }
 
 fn build(criterion: &mut Criterion) {
-    let study = study();
     let mut group = criterion.benchmark_group("build");
     group.sample_size(10);
-    group.bench_function("clutch-r8-eigenvalues, all cores", |bencher| {
-        bencher.iter(|| pcc::build::build(black_box(&study), &Silent).expect("the shipped study builds"));
-    });
+    for text in [STUDY, INVARIANTS] {
+        let study = Study::from_toml(text).expect("the shipped study is valid");
+        group.bench_function(format!("{}, all cores", study.name), |bencher| {
+            bencher.iter(|| pcc::build::build(black_box(&study), &Silent).expect("the shipped study builds"));
+        });
+    }
     group.finish();
 }
 
 fn evaluation(criterion: &mut Criterion) {
-    let surrogate = decode(SURROGATE).expect("the shipped surrogate is valid").surrogate;
     let mut group = criterion.benchmark_group("eval");
     group.sample_size(10);
     group.throughput(Throughput::Elements(SAMPLES));
-    group.bench_function("a million samples of clutch-r8-eigenvalues, all cores", |bencher| {
-        bencher.iter(|| monte_carlo(black_box(&surrogate), SAMPLES, 1, &Silent).expect("samples are asked for"));
-    });
+    for (name, bytes) in SURROGATES {
+        let surrogate = decode(bytes).expect("the shipped surrogate is valid").surrogate;
+        group.bench_function(format!("a million samples of {name}, all cores"), |bencher| {
+            bencher.iter(|| monte_carlo(black_box(&surrogate), SAMPLES, 1, &Silent).expect("samples are asked for"));
+        });
+    }
     group.finish();
 }
 

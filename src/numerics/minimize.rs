@@ -27,6 +27,9 @@ pub struct Limits {
     pub decrease: f64,
 }
 
+/// Value and gradient at a point, or `None` where the function is not defined.
+pub type Evaluation = Option<(f64, Vec<f64>)>;
+
 /// The lowest point found from `start` in the box of `bounds` (lower, upper).
 ///
 /// `evaluate` gives value and gradient at a point, or `None` where the function is not defined; such points are treated as
@@ -53,7 +56,7 @@ pub fn minimize<E>(
     start: &[f64],
     bounds: &[(f64, f64)],
     limits: Limits,
-    mut evaluate: impl FnMut(&[f64]) -> Result<Option<(f64, Vec<f64>)>, E>,
+    mut evaluate: impl FnMut(&[f64]) -> Result<Evaluation, E>,
 ) -> Result<Vec<f64>, E> {
     let bounded = Box { bounds };
     let mut at = |z: &DVector<f64>| -> Result<Option<(f64, DVector<f64>)>, E> {
@@ -67,7 +70,7 @@ pub fn minimize<E>(
     for _ in 0..limits.iterations {
         let mut step = -(&inverse_hessian * &gradient);
         let slope = step.dot(&gradient);
-        if !(slope < 0.0) {
+        if slope >= 0.0 || slope.is_nan() {
             break;
         }
         step *= (2.0 * LONGEST_STEP / step.amax()).min(1.0);

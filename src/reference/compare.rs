@@ -161,9 +161,12 @@ impl Comparison {
     }
 }
 
+/// Real or imaginary part.
+type Part = fn(&Complex<f64>) -> f64;
+
 /// Re λ and Im λ of every mode.
 fn mode_errors(modes: &[usize], surrogate: &Surrogate, runs: &[Run], block: &Block) -> Vec<ComponentError> {
-    let parts: [(&str, fn(&Complex<f64>) -> f64); 2] = [("re", |lambda| lambda.re), ("im", |lambda| lambda.im)];
+    let parts: [(&str, Part); 2] = [("re", |lambda| lambda.re), ("im", |lambda| lambda.im)];
     let order = surrogate.modes();
     let mut errors = Vec::with_capacity(2 * modes.len());
     for (at, mode) in modes.iter().enumerate() {

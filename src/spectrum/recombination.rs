@@ -77,8 +77,8 @@ impl Output {
             (OutputKind::Cluster, modes) => {
                 let (mut coefficients, mut found) =
                     ([Complex::default(); MOST_MODES], [Complex::default(); MOST_MODES]);
-                for k in 1..modes.min(MOST_MODES) {
-                    coefficients[k] = part(k);
+                for (k, coefficient) in coefficients.iter_mut().enumerate().take(modes).skip(1) {
+                    *coefficient = part(k);
                 }
                 let found = &mut found[..modes.min(MOST_MODES)];
                 roots(&coefficients[..found.len()], found);
