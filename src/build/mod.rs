@@ -54,8 +54,8 @@ impl BuildError {
 /// Builds the surrogate of a study on the current rayon thread pool: the same bits for any number of threads.
 ///
 /// All components share one nested design. Level by level it grows by one step until every component is fitted well
-/// enough and, if the study asks for it, the estimated error of the stability proportion is small enough. Modes are grouped
-/// anew at each level; no model run is repeated or dropped.
+/// enough and, if the study asks for it, the estimated error of the stability proportion is small enough, or has not fallen
+/// over four levels. Modes are grouped anew at each level; no model run is repeated or dropped.
 ///
 /// # Errors
 ///
@@ -97,8 +97,7 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
             continue;
         }
         let fitted = fitted.unwrap_or_default();
-        let is_accurate = fitted.iter().all(|fit| matches!(fit.result.stop, Stop::Accurate | Stop::Constant))
-            || fitted.iter().all(|fit| fit.result.stop != Stop::DesignExhausted);
+        let needs_no_points = fitted.iter().all(|fit| fit.result.stop != Stop::DesignExhausted);
         let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, &levels);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let judgement = judge(&surrogate, &results, &values, evaluations.runs(), former, observer)?;
@@ -108,7 +107,7 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
             judgement.reducible_error.is_some_and(|error| error <= tolerance) || progress.has_stalled()
         });
         match next {
-            Some(next) if !(is_accurate && is_decided) => size = next,
+            Some(next) if !(needs_no_points && is_decided) => size = next,
             _ => {
                 surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
                 return Ok(surrogate);

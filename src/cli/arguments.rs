@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 /// How likely is this machine to squeal, flutter or whirl, given what is not known about it?
 ///
-/// pcc runs a model of the machine at some hundred well-chosen points, fits a sparse polynomial chaos expansion to each
-/// eigenvalue component, and writes it to a small file, the surrogate. Millions of samples of the surrogate then tell how
+/// pcc runs a model of the machine at some hundred well-chosen points, fits sparse polynomial chaos expansions to smooth
+/// functions of its eigenvalues, and writes them to a small file, the surrogate. Millions of samples of the surrogate then tell how
 /// often the machine is stable.
 #[derive(Debug, Parser)]
 #[command(name = "pcc", version, max_term_width = 110)]
@@ -41,8 +41,8 @@ pub(super) enum Command {
 
     /// Build a surrogate from a study
     ///
-    /// Runs the model on a nested Latin hypercube design that grows until every component is fitted, and writes index sets
-    /// and coefficients. The same study gives the same bytes on any number of threads.
+    /// Runs the model on a nested Latin hypercube design that grows until every component is fitted and the stability
+    /// proportion is accurate enough, as far as the study asks for it, and writes index sets and coefficients. The same study gives the same bytes on any number of threads.
     Build(Build),
 
     /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices, critical values

@@ -10,8 +10,8 @@ use crate::random::Stream;
 /// Exchanges tried per point and input: twice as many gain little.
 const TRIALS: usize = 6;
 
-/// Distances computed at most, so that large designs take seconds.
-const MOST_DISTANCES: usize = 20_000_000;
+/// Points looked at in all trials together, so that large designs take seconds.
+const MOST_VISITS: usize = 20_000_000;
 
 /// Squared distances below this count as this: points that coincide repel with a finite force.
 const NEAREST: f64 = 1e-12;
@@ -36,7 +36,7 @@ impl Spread {
         if movable < 2 {
             return made;
         }
-        let trials = (TRIALS * movable * self.dimension).min(MOST_DISTANCES / points);
+        let trials = (TRIALS * movable * self.dimension).min(MOST_VISITS / points);
         for _ in 0..trials {
             let input = below(self.dimension, stream);
             let a = first + below(movable, stream);

@@ -36,7 +36,7 @@ const NUGGET: f64 = 1e-11;
 /// Powers of ten by which ν may rise where rounding makes K indefinite.
 const NUGGETS: i32 = 5;
 
-/// Candidates per run: prior variances beyond them are negligible (2 gave the same results as 8).
+/// Candidates per run: prior variances beyond them are negligible (2, 4 and 8 gave the same results).
 const CANDIDATES_PER_RUN: usize = 3;
 
 /// More points than this do not improve the prior; it is found on the first ones, which are a Latin hypercube, too.

@@ -19,13 +19,15 @@ pub enum Stop {
     Accurate,
     /// The highest degree was reached.
     HighestDegree,
-    /// The design could not grow, and N < 2 card(A) at the next degree.
+    /// The fit asks for more points: S² missed its target or, for stepwise regression, N < 2 card(A) at the next degree.
     DesignExhausted,
     /// The values do not vary: the mean is exact.
     Constant,
 }
 
-/// Leave-one-out residuals at points that took no part in any choice of the fit, and so do not flatter it.
+/// Leave-one-out residuals at points on which the fit was not tuned, so that they flatter it little or not at all: for the
+/// minimum-norm fit, points that its prior has not seen; for matching pursuit, points outside the folds, which only chose
+/// degree, norm and number of terms; for stepwise regression all, because its terms are chosen by R².
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlindResiduals {
     /// The first of these points; they are the last of the design.
@@ -45,16 +47,16 @@ pub struct Fitted {
     pub errors: Option<ErrorMeasures>,
     /// Differences between values and their leave-one-out predictions, if determined.
     pub leave_one_out_residuals: Option<Vec<f64>>,
-    /// The same at points that chose nothing; `None` if every point took part in choosing the settings of the fit.
+    /// The same at points on which the fit was not tuned; `None` if it was tuned on all.
     pub blind_residuals: Option<BlindResiduals>,
-    /// Degree p at which the search ended.
+    /// Degree p at which a stepwise search ended; the highest total degree of the terms for the other methods.
     pub degree: u16,
     /// Why it ended.
     pub stop: Stop,
 }
 
 impl Fitted {
-    /// A least-squares fit. Its leave-one-out residuals count as blind: the terms were chosen by R², not by them.
+    /// A least-squares fit.
     fn new(basis: &ActiveBasis<'_>, degree: u16, stop: Stop) -> Result<Self, Interrupted> {
         let mut terms: Vec<(MultiIndex, f64)> = basis.indices().iter().cloned().zip(basis.coefficients()).collect();
         terms.sort_by(|a, b| a.0.cmp(&b.0));

@@ -148,7 +148,8 @@ pub fn fit(
     let degree = basis.indices().iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
     let mut fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
     let s2 = 1.0 - validation.error / variance;
-    fitted.errors = fitted.errors.map(|errors| crate::regression::ErrorMeasures { s2: Some(s2), ..errors });
+    fitted.errors =
+        fitted.errors.map(|errors| crate::regression::ErrorMeasures { s2: Some(s2), corrected_s2: None, ..errors });
     fitted.stop = if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted };
     fitted.blind_residuals = Some(BlindResiduals { first: 0, values: validation.residuals.clone() });
     fitted.leave_one_out_residuals = Some(validation.residuals);

@@ -28,7 +28,7 @@ const CHUNK: u64 = 4096;
 ///
 /// # Errors
 ///
-/// [`ReferenceError`]. Whether the study asks what the surrogate answers is for the caller to decide; inputs and modes
+/// [`ReferenceError`]. Whether the study asks what the surrogate answers is for the caller to decide; inputs
 /// must agree, or [`ReferenceError::OtherProblem`] is returned.
 pub fn certify(
     surrogate: &Surrogate,

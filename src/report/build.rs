@@ -11,6 +11,9 @@ const POOR: f64 = 0.9;
 /// Estimated relative error of the proportion from which a study that set no tolerance is warned.
 const LARGE_ERROR: f64 = 0.05;
 
+/// More levels than this are abbreviated.
+const MANY_LEVELS: usize = 6;
+
 /// Shares of the variance above this are shown by what they leave.
 const ALMOST_ONE: f64 = 1.0 - 5e-6;
 
@@ -105,8 +108,8 @@ impl FitReport {
         });
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
-                "the proportion may be off by {} % of itself; raise design.maximum, or list modes in spectrum.modes that \
-                 decide stability, if some are left out",
+                "the proportion may be off by {} % of itself; if spectrum.modes leaves out modes that can become unstable, \
+                 list them; else raise design.maximum or choose another fit.method, and check with pcc compare or certify",
                 significant(100.0 * error, 2)
             )),
             (None, Some(_)) => warnings.push(
@@ -131,7 +134,7 @@ impl FitReport {
         ]);
         let share = |share: Option<f64>| match share {
             None => "–".to_owned(),
-            Some(share) if share < 1.0 && share > ALMOST_ONE => format!("1 − {:.0e}", 1.0 - share),
+            Some(share) if share > ALMOST_ONE => format!("1 − {:.0e}", (1.0 - share).max(f64::EPSILON)),
             Some(share) => format!("{share:.5}"),
         };
         for fit in fits {
@@ -166,15 +169,22 @@ impl BuildReport {
     }
 }
 
+/// Levels of a design; many by the first two and the last.
+pub(super) fn level_list(levels: &[u64]) -> String {
+    match levels {
+        [first, second, .., last] if levels.len() > MANY_LEVELS => format!("{first} → {second} → … → {last}"),
+        _ => levels.iter().map(u64::to_string).collect::<Vec<_>>().join(" → "),
+    }
+}
+
 impl fmt::Display for BuildReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let levels: Vec<String> = self.levels.iter().map(u64::to_string).collect();
         writeln!(
             f,
             "{}: {} model runs (design levels {}), {:.2} s, seed {}\n",
             self.study,
             count(self.direct_computations),
-            levels.join(" → "),
+            level_list(&self.levels),
             self.elapsed_seconds,
             self.seed
         )?;

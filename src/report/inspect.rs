@@ -1,6 +1,6 @@
 //! What is inside a surrogate file.
 
-use super::build::FitReport;
+use super::build::{FitReport, level_list};
 use super::certify::CertificateReport;
 use super::table::{Align, Table, count, significant};
 use crate::artifact::{Artifact, Format};
@@ -174,7 +174,6 @@ impl fmt::Display for InspectReport {
             self.format,
             count(self.bytes)
         )?;
-        let levels: Vec<String> = self.levels.iter().map(u64::to_string).collect();
         let settings: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key} {value}")).collect();
         let modes: Vec<String> = self.modes.iter().map(usize::to_string).collect();
         let test = if self.self_test_holds() { "holds" } else { "FAILS" };
@@ -182,7 +181,7 @@ impl fmt::Display for InspectReport {
             ("study", self.study.clone()),
             ("built by", format!("pcc {}", self.tool_version)),
             ("model runs", format!("{}, {} failed", count(self.direct_computations), self.failed_runs)),
-            ("design", format!("{}, levels {}, seed {}", self.design, levels.join(" → "), self.seed)),
+            ("design", format!("{}, levels {}, seed {}", self.design, level_list(&self.levels), self.seed)),
             ("method", format!("{}: {}", self.method, settings.join(", "))),
             ("modes", format!("{} by frequency rank", modes.join(", "))),
             ("proportion", self.estimated_error()),

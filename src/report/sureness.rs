@@ -6,7 +6,7 @@ use crate::surrogate::{Certificate, Decision, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
-/// Three answers to "how sure?", each about something else.
+/// Answers to "how sure?", each about something else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sureness {
     /// Wilson interval of the share: what the finite number of samples leaves open.
@@ -38,7 +38,8 @@ pub struct VerifiedBound {
 }
 
 impl Sureness {
-    /// Of `stable` samples, of which the second would be so many if max Re λ were shifted.
+    /// `stable` counts the stable samples, `if_shifted` those that would be if max Re λ were larger by the lower, and by
+    /// the upper, end of the band.
     pub fn new(surrogate: &Surrogate, stable: Proportion, if_shifted: [u64; 2], interval: Interval) -> Self {
         let decision = &surrogate.decision;
         let share = |hits| Proportion { hits, samples: stable.samples }.value();

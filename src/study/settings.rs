@@ -141,7 +141,8 @@ pub struct Stepwise {
 /// Settings of the methods that choose degree, norm and number of terms by cross-validation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smooth {
-    /// Highest degree: of each input for the minimum-norm fit, of the index set for pursuit; at least 1.
+    /// Highest degree, at least 1: in each input for the minimum-norm fit, whose terms can have a higher total degree; of
+    /// the index set for pursuit.
     pub max_degree: u16,
     /// S² at which a component is accurate enough, in (0, 1\].
     pub s2_target: f64,
