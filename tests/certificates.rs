@@ -43,7 +43,7 @@ fn the_truth_lies_inside_the_bound_in_at_least_95_percent_of_repetitions() {
 }
 
 #[test]
-fn good_surrogates_are_certified_five_times_narrower_than_runs_alone() {
+fn good_surrogates_are_certified_to_less_than_half_the_width_of_runs_alone() {
     let study = support::invariants_study(3);
     let certificate = certify(&build(&study), &study, RUNS, 7, LEVEL, &Silent).unwrap();
     let alone = Proportion { hits: RUNS / 5, samples: RUNS }.clopper_pearson(LEVEL);

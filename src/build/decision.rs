@@ -49,7 +49,7 @@ const TRIED_RUNS: usize = 150;
 /// Blind residuals that an estimate takes at least.
 const LEAST_BLIND: usize = 10;
 
-/// How much smaller residuals look at points that chose the settings of the fit: up to this.
+/// How much smaller residuals look at points that chose the settings of the fit, about.
 const FLATTERY: f64 = 2.0;
 
 /// Recombination gives coalescing eigenvalues back to the root of rounding, relative to the largest.
@@ -80,13 +80,15 @@ pub(super) struct Judgement {
     pub former: Option<Former>,
 }
 
-/// Judges `surrogate`, fitted to `values` of its components at `runs`; `former` is the judgement of the level before.
+/// Judges `surrogate`, fitted to `values` of its components at `runs`; `former` is the judgement of the level before. If
+/// there is none and the level `is_last`, nothing can be estimated, and the points it would take are not evaluated.
 pub(super) fn judge(
     surrogate: &Surrogate,
     fitted: &[Fitted],
     values: &[Vec<f64>],
     runs: &[Run],
     former: Option<Former>,
+    is_last: bool,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
@@ -96,6 +98,11 @@ pub(super) fn judge(
     let seen: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
     let blind = blind_residuals(fitted, runs.len());
     let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
+    let forgotten = forgotten_share(surrogate, values, runs);
+    if is_last && former.is_none() && forgotten == 0.0 {
+        let decision = Decision { max_re_residuals, proportion_error: None };
+        return Ok(Judgement { decision, reducible_error: None, former: None });
+    }
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
     let now = Former { proportion: judge.proportion(), discordance: by_seen.mean_of(f64::abs) };
@@ -106,10 +113,9 @@ pub(super) fn judge(
         }
         _ => None,
     };
-    let forgotten = forgotten_share(surrogate, values, runs) / now.proportion;
-    let error = match (reducible_error, forgotten > 0.0) {
-        (None, false) => None,
-        (error, _) => Some(error.unwrap_or(0.0).hypot(forgotten)).filter(|error| error.is_finite()),
+    let error = match reducible_error {
+        None if forgotten == 0.0 => None,
+        error => Some(error.unwrap_or(0.0).hypot(forgotten / now.proportion)).filter(|error| error.is_finite()),
     };
     let decision = Decision { max_re_residuals, proportion_error: error };
     Ok(Judgement { decision, reducible_error, former: Some(now) })

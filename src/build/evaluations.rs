@@ -61,6 +61,7 @@ impl<'a> Evaluations<'a> {
         self.study.spectrum.target.outputs(self.runner.modes(), &spectra).map_err(|cause| {
             let at = match cause {
                 ClusterError::Split { at, .. } | ClusterError::NearRealAxis { at, .. } => at,
+                ClusterError::TooMany { .. } => 0,
             };
             let inputs = &self.study.inputs;
             BuildError::Clusters { point: inputs.describe(&inputs.physical(self.samples().point(at))), cause }

@@ -55,7 +55,7 @@ impl BuildError {
 ///
 /// All components share one nested design. Level by level it grows by one step until every component is fitted well
 /// enough and, if the study asks for it, the estimated error of the stability proportion is small enough, or has not fallen
-/// over four levels. Modes are grouped anew at each level; no model run is repeated or dropped.
+/// while the design grew by four levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
 ///
 /// # Errors
 ///
@@ -76,7 +76,7 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
     let mut levels = Vec::new();
     let mut grouping: Vec<Output> = Vec::new();
     let mut former: Option<Former> = None;
-    let mut progress = Progress { lowest: f64::INFINITY, levels_since: 0 };
+    let mut progress = Progress { lowest: f64::INFINITY, at_size: study.design.initial, levels_since: 0 };
     let mut size = study.design.initial;
     loop {
         levels.push(size as u64);
@@ -100,12 +100,13 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
         let needs_no_points = fitted.iter().all(|fit| fit.result.stop != Stop::DesignExhausted);
         let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, &levels);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
-        let judgement = judge(&surrogate, &results, &values, evaluations.runs(), former, observer)?;
+        let tolerance = study.fit.proportion_tolerance;
+        let is_last = next.is_none() || (needs_no_points && tolerance.is_none());
+        let judgement = judge(&surrogate, &results, &values, evaluations.runs(), former, is_last, observer)?;
         (surrogate.decision, former) = (judgement.decision, judgement.former);
-        let is_decided = study.fit.proportion_tolerance.is_none_or(|tolerance| {
-            progress.note(judgement.reducible_error);
-            judgement.reducible_error.is_some_and(|error| error <= tolerance) || progress.has_stalled()
-        });
+        progress.note(judgement.reducible_error, size);
+        let is_small = |tolerance| judgement.reducible_error.is_some_and(|error| error <= tolerance);
+        let is_decided = tolerance.is_none_or(is_small) || progress.has_stalled(size);
         match next {
             Some(next) if !(needs_no_points && is_decided) => size = next,
             _ => {
@@ -116,26 +117,33 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
     }
 }
 
-/// Levels in a row without a lower estimate after which more runs are taken to be of no use: where stability is within
-/// rounding of its limit everywhere, or where the model jumps.
+/// Levels without a lower estimate, and growth of the design over them, after which more runs are taken to be of no use:
+/// where stability is within rounding of its limit everywhere, or where the model jumps.
 const PATIENCE: usize = 4;
+const GROWTH: usize = 2;
 
 /// Whether the estimated error of the proportion still falls.
 struct Progress {
     lowest: f64,
+    /// Size of the design at the lowest estimate.
+    at_size: usize,
     levels_since: usize,
 }
 
 impl Progress {
-    fn note(&mut self, error: Option<f64>) {
+    fn note(&mut self, error: Option<f64>, size: usize) {
         match error {
-            Some(error) if error < self.lowest => (self.lowest, self.levels_since) = (error, 0),
-            _ => self.levels_since += 1,
+            Some(error) if error < self.lowest => {
+                (self.lowest, self.at_size, self.levels_since) = (error, size, 0);
+            }
+            Some(_) => self.levels_since += 1,
+            // Too few blind residuals yet: nothing is known to have stalled.
+            None => {}
         }
     }
 
-    fn has_stalled(&self) -> bool {
-        self.levels_since >= PATIENCE
+    fn has_stalled(&self, size: usize) -> bool {
+        self.levels_since >= PATIENCE && size >= GROWTH * self.at_size
     }
 }
 

@@ -5,21 +5,22 @@ use crate::progress::Observer;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Samples treated together, a multiple of [`super::LANES`]: part of the results' definition, since it fixes the order
-/// of sums. Every sample here costs several evaluations, so a chunk is smaller than one of plain sampling.
+/// Samples treated together where every sample costs several evaluations, a multiple of [`super::LANES`].
 pub(super) const CHUNK: u64 = 1024;
 
 /// Chunks whose results are held in memory before they are merged.
-const CHUNKS_IN_FLIGHT: u64 = 256;
+const CHUNKS_IN_FLIGHT: u64 = 1024;
 
-/// Calls `work` for every chunk of samples 0 … `samples` − 1 on the current rayon thread pool, each thread with a
-/// `workspace` of its own, and `merge` with the results in the order of the chunks.
+/// Calls `work` for every chunk of `chunk` samples among 0 … `samples` − 1 on the current rayon thread pool, each thread with a
+/// `workspace` of its own, and `merge` with the results in the order of the chunks. The size of the chunks is part of the
+/// result's definition, since it fixes the order of sums.
 ///
 /// # Errors
 ///
 /// [`EvalError::NoSamples`], [`EvalError::Interrupted`], or the error of the first chunk that fails.
 pub(super) fn in_chunks<W, P: Send>(
     samples: u64,
+    chunk: u64,
     observer: &dyn Observer,
     workspace: impl Fn() -> W + Sync + Send,
     work: impl Fn(&mut W, Range<u64>) -> Result<P, EvalError> + Sync + Send,
@@ -29,15 +30,15 @@ pub(super) fn in_chunks<W, P: Send>(
         return Err(EvalError::NoSamples);
     }
     observer.begin("samples", samples);
-    let chunks = samples.div_ceil(CHUNK);
+    let chunks = samples.div_ceil(chunk);
     let mut first = 0;
     while first < chunks {
         let end = chunks.min(first + CHUNKS_IN_FLIGHT);
         let parts: Vec<Result<P, EvalError>> = (first..end)
             .into_par_iter()
-            .map_init(&workspace, |workspace, chunk| {
+            .map_init(&workspace, |workspace, number| {
                 observer.check()?;
-                let range = chunk * CHUNK..samples.min((chunk + 1).saturating_mul(CHUNK));
+                let range = number * chunk..samples.min((number + 1).saturating_mul(chunk));
                 let count = range.end - range.start;
                 let part = work(workspace, range)?;
                 observer.advance(count);
@@ -66,7 +67,7 @@ mod tests {
                 assert_eq!(range.start, next);
                 next = range.end;
             };
-            in_chunks(samples, &Silent, || (), |_, range| Ok(range), merge).unwrap();
+            in_chunks(samples, CHUNK, &Silent, || (), |_, range| Ok(range), merge).unwrap();
             assert_eq!(next, samples);
         }
     }
@@ -76,9 +77,9 @@ mod tests {
         let failing = |_: &mut (), range: Range<u64>| {
             if range.start >= 3 * CHUNK { Err(EvalError::NotFinite { point: range.start.to_string() }) } else { Ok(()) }
         };
-        let error = in_chunks(100 * CHUNK, &Silent, || (), failing, |()| ()).unwrap_err();
+        let error = in_chunks(100 * CHUNK, CHUNK, &Silent, || (), failing, |()| ()).unwrap_err();
         assert_eq!(error, EvalError::NotFinite { point: (3 * CHUNK).to_string() });
-        assert_eq!(in_chunks(0, &Silent, || (), failing, |()| ()), Err(EvalError::NoSamples));
+        assert_eq!(in_chunks(0, CHUNK, &Silent, || (), failing, |()| ()), Err(EvalError::NoSamples));
     }
 
     struct Stopping;
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn an_interruption_ends_the_work() {
-        let error = in_chunks(u64::MAX, &Stopping, || (), |_, _| Ok(()), |()| ()).unwrap_err();
+        let error = in_chunks(u64::MAX, CHUNK, &Stopping, || (), |_, _| Ok(()), |()| ()).unwrap_err();
         assert_eq!(error, EvalError::Interrupted(Interrupted));
     }
 }

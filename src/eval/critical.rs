@@ -18,7 +18,7 @@
 //! equal bins, so memory does not depend on the number of samples.
 
 use super::bracket::{Bracket, End};
-use super::chunks::in_chunks;
+use super::chunks::{CHUNK, in_chunks};
 use super::monte_carlo::EvalError;
 use super::plan::{LANES, Plan};
 use super::points::Evaluator;
@@ -150,6 +150,7 @@ pub fn critical_values(
     let mut values = CriticalValues::new(samples, domain);
     in_chunks(
         samples,
+        CHUNK,
         observer,
         || Search { surrogate, evaluator: Evaluator::new(surrogate, &plan), input, seed, points: Vec::new() },
         |search, range| search.run(range, observer),

@@ -4,6 +4,7 @@
 //! and merged in the order of their numbers, so counts and moments do not depend on the number of threads, and memory not on
 //! the number of samples.
 
+use super::chunks::in_chunks;
 use super::plan::{LANES, Plan};
 use super::points::Evaluator;
 use crate::input::random_point;
@@ -11,15 +12,11 @@ use crate::progress::{Interrupted, Observer};
 use crate::random::Purpose;
 use crate::spectrum::Summary;
 use crate::surrogate::Surrogate;
-use rayon::prelude::*;
 use std::ops::Range;
 use thiserror::Error;
 
 /// Samples summarised together, a multiple of [`LANES`]: part of the result's definition, since it fixes the order of sums.
 const CHUNK: u64 = 4096;
-
-/// Chunks whose summaries are held in memory before they are merged.
-const CHUNKS_IN_FLIGHT: u64 = 1024;
 
 /// Why an evaluation gave no result.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -64,34 +61,16 @@ pub fn monte_carlo(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Summary, EvalError> {
-    if samples == 0 {
-        return Err(EvalError::NoSamples);
-    }
     let plan = Plan::new(surrogate);
     let mut summary = Summary::new(surrogate.expansions.len(), surrogate.modes().len());
-    observer.begin("samples", samples);
-    let chunks = samples.div_ceil(CHUNK);
-    let mut first = 0;
-    while first < chunks {
-        let end = chunks.min(first + CHUNKS_IN_FLIGHT);
-        let parts: Vec<Result<Summary, EvalError>> = (first..end)
-            .into_par_iter()
-            .map_init(
-                || Evaluator::new(surrogate, &plan),
-                |evaluator, chunk| {
-                    observer.check()?;
-                    let range = chunk * CHUNK..samples.min((chunk + 1) * CHUNK);
-                    observer.advance(range.end - range.start);
-                    summarise(surrogate, evaluator, seed, range)
-                },
-            )
-            .collect();
-        for part in parts {
-            summary.merge(&part.inspect_err(|_| observer.finish())?);
-        }
-        first = end;
-    }
-    observer.finish();
+    in_chunks(
+        samples,
+        CHUNK,
+        observer,
+        || Evaluator::new(surrogate, &plan),
+        |evaluator, range| summarise(surrogate, evaluator, seed, range),
+        |part| summary.merge(&part),
+    )?;
     Ok(summary)
 }
 

@@ -26,7 +26,7 @@
 //! indices. With the normal quantile z, half a width is the root of the sum of the squares of z × standard error and,
 //! for the indicator, of z²/(2nV), which is what Wilson's interval leaves open when no such sample was seen.
 
-use super::chunks::in_chunks;
+use super::chunks::{CHUNK, in_chunks};
 use super::correlation::{Correlation, Products};
 use super::monte_carlo::EvalError;
 use super::plan::{LANES, Plan};
@@ -122,6 +122,7 @@ pub fn sensitivities(
     let mut comparison = Comparison::new(surrogate.inputs.dimension());
     in_chunks(
         samples,
+        CHUNK,
         observer,
         || Comparer { surrogate, evaluator: Evaluator::new(surrogate, &plan), seed, center, pairs: Vec::new() },
         |comparer, range| comparer.compare(range, observer),

@@ -14,7 +14,7 @@
 //! Δ_i = (A y)_i/A_ii,   A = (K + νI)⁻¹,
 //!
 //! so a design of N runs is judged without a single refit. That the parameters were chosen by it makes the error look
-//! up to twice smaller than it is; at the points that a grown design adds, the prior of the smaller one is judged blindly.
+//! about twice smaller than it is; at the points that a grown design adds, the prior of the smaller one is judged blindly.
 //!
 //! Finally terms too small to matter beside that error are dropped: the expansion is sparse.
 
@@ -39,7 +39,7 @@ const NUGGETS: i32 = 5;
 /// Candidates per run: prior variances beyond them are negligible (2, 4 and 8 gave the same results).
 const CANDIDATES_PER_RUN: usize = 3;
 
-/// More points than this do not improve the prior; it is found on the first ones, which are a Latin hypercube, too.
+/// The prior is found on so many points at most, the first ones: each step of the search costs the cube of their number.
 const PRIOR_POINTS: usize = 300;
 
 /// Dropped terms together are below this share of the leave-one-out error.
@@ -71,7 +71,7 @@ pub struct Learnt {
     pub prior: Prior,
     /// ½ ln of the mean square leave-one-out error, relative to the variance.
     error: Option<f64>,
-    /// Number of points that chose the prior.
+    /// Number of points of the design on which it was found.
     points: usize,
     /// Blind residuals of the last points.
     blind: Option<BlindResiduals>,
@@ -132,7 +132,8 @@ pub fn fit(
         let mean = Fitted::mean(tables, inputs, response.values, variance, observer)?;
         return Ok((mean, Learnt::nothing(inputs)));
     };
-    let blind = problem.blind_residuals(former, error);
+    let unchanged = (prior == former.prior).then_some(&solution);
+    let blind = problem.blind_residuals(former, unchanged, error);
     let learnt = Learnt { prior, error: Some(error), points: response.values.len(), blind };
     let (indices, mut coefficients, residuals, left_out) = solution.without_negligible_terms(problem.resolution);
     coefficients.iter_mut().for_each(|coefficient| *coefficient *= problem.scale);
@@ -208,13 +209,17 @@ impl<'a> Problem<'a> {
 
     /// What the prior of a former design, chosen without the points that are new here, misses at each of them. Residuals
     /// of points that were new on designs before are kept while there are few, scaled by how far errors fell since.
-    fn blind_residuals(&self, former: &Learnt, error: f64) -> Option<BlindResiduals> {
+    /// `unchanged` is the solution with the former prior, if it is known.
+    fn blind_residuals(&self, former: &Learnt, unchanged: Option<&Solution>, error: f64) -> Option<BlindResiduals> {
         let first = former.points;
         if first == 0 || first >= self.values.len() {
             return former.blind.clone();
         }
-        let solution = self.solve(&former.prior)?;
-        let new = solution.left_out.iter().skip(first).map(|residual| residual * self.scale);
+        let left_out = match unchanged {
+            Some(solution) => solution.left_out.clone(),
+            None => self.solve(&former.prior)?.left_out,
+        };
+        let new = left_out.iter().skip(first).map(|residual| residual * self.scale);
         if new.len() >= ENOUGH_BLIND {
             return Some(BlindResiduals { first, values: new.collect() });
         }

@@ -61,12 +61,13 @@ impl Fitted {
         let mut terms: Vec<(MultiIndex, f64)> = basis.indices().iter().cloned().zip(basis.coefficients()).collect();
         terms.sort_by(|a, b| a.0.cmp(&b.0));
         let (indices, coefficients) = terms.into_iter().unzip();
+        let left_out = basis.leave_one_out_residuals();
         Ok(Self {
             indices: IndexSet::from_unsorted(indices),
             coefficients,
             errors: Some(basis.errors()?),
-            blind_residuals: basis.leave_one_out_residuals().map(|values| BlindResiduals { first: 0, values }),
-            leave_one_out_residuals: basis.leave_one_out_residuals(),
+            blind_residuals: left_out.clone().map(|values| BlindResiduals { first: 0, values }),
+            leave_one_out_residuals: left_out,
             degree,
             stop,
         })

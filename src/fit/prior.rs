@@ -96,7 +96,11 @@ impl Prior {
 
     /// s_α.
     pub(super) fn variance(&self, alpha: &[u16]) -> f64 {
-        alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum::<f64>().exp()
+        self.log_variance(alpha).exp()
+    }
+
+    fn log_variance(&self, alpha: &[u16]) -> f64 {
+        alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum()
     }
 
     /// K and its parts on the first `samples` points of a design, with degrees up to `degree` in each input.
@@ -129,9 +133,9 @@ impl Prior {
     /// The `count` multi-indices with the largest prior variance, the canonically first among equals, with degrees up to
     /// `degree` in each input, in canonical order.
     pub(super) fn likeliest(&self, count: usize, degree: u16) -> Vec<MultiIndex> {
-        let mut walk = Walk::new(self, degree);
+        let walk = Walk::new(self, degree);
         // Bisection for the threshold of ln s_α: members can only become fewer as it rises.
-        let (mut low, mut high) = (LOWEST, walk.best + 1.0);
+        let (mut low, mut high) = (LOWEST, walk.rest[0] + 1.0);
         if walk.above(low, count).len() <= count {
             high = low;
         }
@@ -140,12 +144,9 @@ impl Prior {
             if walk.above(middle, count).len() > count { low = middle } else { high = middle }
         }
         let mut members = walk.above(low, MOST_TIES.max(2 * count));
-        let log_variance = |alpha: &MultiIndex| -> f64 {
-            alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum()
-        };
         // {0} belongs to every expansion, whatever its rank.
         members.sort_by(|a, b| {
-            let rank = |alpha: &MultiIndex| if alpha.is_constant() { f64::INFINITY } else { log_variance(alpha) };
+            let rank = |alpha: &MultiIndex| if alpha.is_constant() { f64::INFINITY } else { self.log_variance(alpha) };
             rank(b).total_cmp(&rank(a)).then_with(|| a.cmp(b))
         });
         members.truncate(count.max(1));
@@ -169,8 +170,6 @@ struct Walk<'a> {
     degree: u16,
     /// Largest ln of the factors of the inputs from j on.
     rest: Vec<f64>,
-    /// Largest ln s_α.
-    best: f64,
 }
 
 impl<'a> Walk<'a> {
@@ -179,11 +178,11 @@ impl<'a> Walk<'a> {
         for input in (0..prior.inputs()).rev() {
             rest[input] = rest[input + 1] + prior.log_factor(input, 1).max(0.0);
         }
-        Self { prior, degree, best: rest[0], rest }
+        Self { prior, degree, rest }
     }
 
     /// The indices with ln s_α ≥ `threshold`; the walk ends early beyond `limit`.
-    fn above(&mut self, threshold: f64, limit: usize) -> Vec<MultiIndex> {
+    fn above(&self, threshold: f64, limit: usize) -> Vec<MultiIndex> {
         let (mut members, mut alpha) = (Vec::new(), vec![0; self.prior.inputs()]);
         self.extend(0, 0.0, threshold, limit, &mut alpha, &mut members);
         members

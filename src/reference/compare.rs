@@ -1,9 +1,10 @@
 //! A surrogate against its model on the same points.
 
-use super::monte_carlo::{ReferenceError, for_each_chunk};
+use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
 use crate::design::Run;
-use crate::eval::{Plan, evaluate_points};
+use crate::eval::Plan;
 use crate::progress::Observer;
+use crate::random::Purpose;
 use crate::spectrum::{Block, Component, Output, OutputKind, SpectrumError};
 use crate::statistics::{Moments, Proportion};
 use crate::study::Study;
@@ -113,17 +114,13 @@ pub fn compare(
         falsely_unstable: 0,
         components: Vec::new(),
     };
-    for_each_chunk(study, samples, seed, observer, |runner, points, runs| {
+    for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, points, runs| {
         let mut modes = surrogate.modes();
         modes.sort_unstable();
         if modes != runner.modes() {
             return Err(other_problem());
         }
-        let block = evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        if let Some(at) = block.first_not_finite() {
-            let point = study.inputs.describe(&study.inputs.physical(&points[at]));
-            return Err(ReferenceError::NotFinite { point });
-        }
+        let block = surrogate_block(surrogate, &plan, points)?;
         comparison.classify(runs, &block);
         let mut errors = mode_errors(runner.modes(), surrogate, runs, &block);
         let at_point = |i: usize| study.inputs.describe(&study.inputs.physical(&points[i]));

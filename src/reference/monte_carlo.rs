@@ -1,7 +1,7 @@
 //! Monte Carlo on the initial model.
 
 use crate::design::{Run, RunError, Runner};
-use crate::eval::EvalError;
+use crate::eval::{EvalError, Plan, evaluate_points};
 use crate::input::random_point;
 use crate::model::ModelError;
 use crate::progress::Observer;
@@ -68,12 +68,13 @@ impl ReferenceError {
     }
 }
 
-/// Runs the model at samples 0 … `samples` − 1 of the study's input space, the points that
+/// Runs the model at samples 0 … `samples` − 1 of the study's input space for `purpose`, for evaluation the points that
 /// [`crate::eval::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized points and runs.
 pub(super) fn for_each_chunk(
     study: &Study,
     samples: u64,
     seed: u64,
+    purpose: Purpose,
     observer: &dyn Observer,
     mut consume: impl FnMut(&Runner<'_>, &[Vec<f64>], &[Run]) -> Result<(), ReferenceError>,
 ) -> Result<(), ReferenceError> {
@@ -86,26 +87,32 @@ pub(super) fn for_each_chunk(
         let standardized: Vec<Vec<f64>> = (start..samples.min(start + CHUNK))
             .map(|index| {
                 let mut point = vec![0.0; study.inputs.dimension()];
-                random_point(&study.inputs, seed, Purpose::Evaluation, index, &mut point);
+                random_point(&study.inputs, seed, purpose, index, &mut point);
                 point
             })
             .collect();
-        let runs = run_points(study, &mut runner, &standardized, observer)?;
+        let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
+        let runs = runner.run(&physical, observer)?;
         consume(&runner, &standardized, &runs)?;
     }
     observer.finish();
     Ok(())
 }
 
-/// Direct computations at standardized points.
-pub(super) fn run_points(
-    study: &Study,
-    runner: &mut Runner<'_>,
-    standardized: &[Vec<f64>],
-    observer: &dyn Observer,
-) -> Result<Vec<Run>, ReferenceError> {
-    let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
-    Ok(runner.run(&physical, observer)?)
+/// The surrogate at these standardized points, all of its values finite.
+pub(super) fn surrogate_block(
+    surrogate: &Surrogate,
+    plan: &Plan,
+    points: &[Vec<f64>],
+) -> Result<Block, ReferenceError> {
+    let block = evaluate_points(surrogate, plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    match block.first_not_finite() {
+        None => Ok(block),
+        Some(at) => {
+            let point = surrogate.inputs.describe(&surrogate.inputs.physical(&points[at]));
+            Err(ReferenceError::NotFinite { point })
+        }
+    }
 }
 
 /// What direct computations say.
@@ -130,7 +137,7 @@ pub fn monte_carlo(
     observer: &dyn Observer,
 ) -> Result<Reference, ReferenceError> {
     let mut reference: Option<Reference> = None;
-    for_each_chunk(study, samples, seed, observer, |runner, _, runs| {
+    for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
         let outputs = mode_outputs(runner.modes());
         let mut block = Block::with_capacity(2 * outputs.len(), outputs.len(), runs.len());
         for run in runs {

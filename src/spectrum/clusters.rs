@@ -6,6 +6,7 @@
 //! motion, but there no group of oscillating modes can be formed: that is reported.
 
 use super::modes::Spectrum;
+use super::recombination::MOST_MODES;
 use thiserror::Error;
 
 /// Neighbours whose frequencies come closer than this share of the largest distance |λ_{k+1} − λ_k| on the design belong
@@ -34,6 +35,17 @@ pub enum ClusterError {
         second: f64,
         /// Where.
         at: usize,
+    },
+    /// More modes come close than can be told apart again.
+    #[error(
+        "modes {first} to {last} all touch one another in turn, more than {MOST_MODES}; use target = \"eigenvalues\" or \
+         narrow the inputs"
+    )]
+    TooMany {
+        /// The lowest mode of the group.
+        first: usize,
+        /// The highest.
+        last: usize,
     },
     /// A mode comes too close to the real axis.
     #[error(
@@ -89,7 +101,10 @@ pub fn clusters(spectra: &[Spectrum], modes: &[usize]) -> Result<Vec<Vec<usize>>
             _ => groups.push(vec![mode]),
         }
     }
-    Ok(groups)
+    match groups.iter().find(|group| group.len() > MOST_MODES) {
+        Some(group) => Err(ClusterError::TooMany { first: group[0], last: group[group.len() - 1] }),
+        None => Ok(groups),
+    }
 }
 
 /// The spectrum in which `mode` and the next are closest, if that is close.
@@ -136,6 +151,15 @@ mod tests {
         assert_eq!(clusters(&design, &[2, 3]).unwrap(), [vec![2, 3]]);
         let error = ClusterError::Split { listed: 3, missing: 2, first: 20.0, second: 21.0, at: 1 };
         assert_eq!(clusters(&design, &[1, 3]), Err(error));
+    }
+
+    #[test]
+    fn groups_that_no_polynomial_can_carry_are_refused() {
+        let apart: Vec<f64> = (1..=20).map(|k| 10.0 * f64::from(k)).collect();
+        let close: Vec<f64> = (1..=20).map(|k| 100.0 + 0.1 * f64::from(k)).collect();
+        let modes: Vec<usize> = (1..=20).collect();
+        let found = clusters(&[spectrum(&apart), spectrum(&close)], &modes);
+        assert_eq!(found, Err(ClusterError::TooMany { first: 1, last: 20 }));
     }
 
     #[test]

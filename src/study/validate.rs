@@ -21,6 +21,17 @@ const LARGEST_DESIGN: i64 = 1_000_000;
 
 const DESIGNS: [DesignKind; 2] = [DesignKind::NestedLhs, DesignKind::NestedMaximinLhs];
 
+/// A method that takes no settings of the stepwise one.
+type SmoothMethod = fn(Smooth) -> FitMethod;
+
+/// The fitting methods; none of the smooth ones for "stepwise".
+const METHODS: [(&str, Option<SmoothMethod>); 4] = [
+    ("stepwise", None),
+    ("auto", Some(FitMethod::Auto)),
+    ("minimum-norm", Some(FitMethod::MinimumNorm)),
+    ("omp", Some(FitMethod::Omp)),
+];
+
 const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
 /// Univariate polynomial values that a design may need: two gigabytes.
@@ -247,10 +258,10 @@ impl Lines<'_> {
             None => (target == Target::Invariants).then_some(defaults::PROPORTION_TOLERANCE),
         };
         let smooth = Smooth { max_degree, s2_target };
-        let by_name = [("stepwise", None), ("auto", Some(0)), ("minimum-norm", Some(1)), ("omp", Some(2))];
         let method = match &raw.method {
-            Some(word) => self.word("fit.method", word, &by_name)?,
-            None => (target == Target::Invariants).then_some(0),
+            Some(word) => self.word("fit.method", word, &METHODS)?,
+            None if target == Target::Invariants => Some(FitMethod::Auto as SmoothMethod),
+            None => None,
         };
         let (norm, forward, backward) = (raw.q_norm, raw.epsilon_forward, raw.epsilon_backward);
         let method = match method {
@@ -262,7 +273,7 @@ impl Lines<'_> {
                         return Err(StudyError::KeyOfStepwise { place: self.place(key, &value) });
                     }
                 }
-                [FitMethod::Auto, FitMethod::MinimumNorm, FitMethod::Omp][smooth_method](smooth)
+                smooth_method(smooth)
             }
         };
         Ok(FitSettings { method, proportion_tolerance })
