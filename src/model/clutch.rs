@@ -7,10 +7,10 @@
 //! rigid rotation (0, 1, 0, 0, −r, r) is not in the null space of K, a real eigenvalue appears and no modes coalesce. And
 //! M_p, I_x, I_y, which are not printed, are those that reproduce its table 2: 40 kg and 0.030 kg·m².
 
-use super::second_order::state_matrix;
+use super::second_order::{Linearization, SecondOrder};
 use super::{Model, ModelError, Parameter, Range};
 use crate::numerics::eigenvalues::eigenvalues;
-use nalgebra::{Complex, DMatrix, Matrix6, Vector6};
+use nalgebra::{Complex, DMatrix, Matrix6, dvector};
 
 const fn parameter(
     name: &'static str,
@@ -79,36 +79,40 @@ impl Clutch {
         Ok(Self { values, uncertain })
     }
 
-    fn matrices(&self, point: &[f64]) -> Matrices {
+    /// The values of [`CLUTCH_PARAMETERS`] at `point`.
+    fn values(&self, point: &[f64]) -> [f64; 16] {
         let mut values = self.values;
         for (&parameter, &value) in self.uncertain.iter().zip(point) {
             values[parameter] = value;
         }
-        let [mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, plate_mass, inertia_x, inertia_y, c_a, c_b, c_c, c_d, c_f] =
-            values;
-        let quarter = plate_mass / 4.0;
-        let geometry = Geometry { mu, r: (r_1 + r_2) / 2.0, l };
-        let springs = [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)];
-        Matrices {
-            mass_diagonal: Vector6::new(inertia_x, inertia_y, quarter, quarter, quarter, quarter),
-            damping: geometry.assemble([c_a, c_b, c_c, c_d], c_f),
-            stiffness: geometry.assemble(springs, k_f),
-        }
+        values
     }
 
-    /// The 12 × 12 state matrix at `point`, in 1/s and 1/s². Parameters beyond the end of a short `point` are nominal.
-    pub fn state_matrix(&self, point: &[f64]) -> DMatrix<f64> {
-        let Matrices { mass_diagonal, damping, stiffness } = self.matrices(point);
-        state_matrix(&mass_diagonal, &damping, &stiffness)
+    /// M, C and K at `point`. Parameters beyond the end of a short `point` are nominal.
+    pub fn matrices(&self, point: &[f64]) -> SecondOrder {
+        matrices(&self.values(point))
+    }
+
+    fn check(&self, point: &[f64]) -> Result<(), ModelError> {
+        self.uncertain.iter().zip(point).try_for_each(|(&at, &value)| check_range(at, value))
     }
 }
 
 impl Model for Clutch {
     fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
-        for (&at, &value) in self.uncertain.iter().zip(point) {
-            check_range(at, value)?;
-        }
-        Ok(eigenvalues(self.state_matrix(point))?)
+        self.check(point)?;
+        Ok(eigenvalues(self.matrices(point).state_matrix()?)?)
+    }
+
+    fn has_derivatives(&self) -> bool {
+        true
+    }
+
+    fn linearization(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
+        self.check(point)?;
+        let values = self.values(point);
+        let derivatives: Vec<SecondOrder> = self.uncertain.iter().map(|&by| derivative(&values, by)).collect();
+        matrices(&values).linearization(&derivatives).map(Some)
     }
 }
 
@@ -124,33 +128,95 @@ fn position(name: &str) -> Result<usize, ModelError> {
     })
 }
 
-/// M, C and K of M Ü + C U̇ + K U = 0 for U = (θ_x, θ_y, Z_A, Z_B, Z_C, Z_D).
-struct Matrices {
-    mass_diagonal: Vector6<f64>,
-    damping: Matrix6<f64>,
-    stiffness: Matrix6<f64>,
+/// M, C and K for U = (θ_x, θ_y, Z_A, Z_B, Z_C, Z_D) from the values of [`CLUTCH_PARAMETERS`].
+fn matrices(values: &[f64; 16]) -> SecondOrder {
+    let [mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, plate_mass, inertia_x, inertia_y, c_a, c_b, c_c, c_d, c_f] =
+        *values;
+    let levers = Levers::new(mu, (r_1 + r_2) / 2.0, l);
+    let springs = [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)];
+    SecondOrder {
+        mass: mass(inertia_x, inertia_y, plate_mass),
+        damping: levers.assemble([c_a, c_b, c_c, c_d], c_f),
+        stiffness: levers.assemble(springs, k_f),
+    }
 }
 
-/// What K and C share: friction coefficient, mean radius r = (r_1 + r_2)/2 in m, thickness l in m.
-struct Geometry {
-    mu: f64,
+/// The derivatives of M, C and K by the parameter number `by`.
+///
+/// C and K are linear in the springs or dampers and in the five lever products, so each derivative is one more assembly.
+fn derivative(values: &[f64; 16], by: usize) -> SecondOrder {
+    let [mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, _, _, _, c_a, c_b, c_c, c_d, c_f] = *values;
+    let r = (r_1 + r_2) / 2.0;
+    let levers = Levers::new(mu, r, l);
+    let zero = || DMatrix::zeros(6, 6);
+    let none = SecondOrder { mass: zero(), damping: zero(), stiffness: zero() };
+    let by_levers = |slopes: Levers| {
+        let springs = [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)];
+        SecondOrder {
+            mass: zero(),
+            damping: slopes.assemble([c_a, c_b, c_c, c_d], c_f),
+            stiffness: slopes.assemble(springs, k_f),
+        }
+    };
+    let by_springs = |springs, bending| SecondOrder { stiffness: levers.assemble(springs, bending), ..none.clone() };
+    let by_dampers = |dampers, bending| SecondOrder { damping: levers.assemble(dampers, bending), ..none.clone() };
+    let by_mass = |mass| SecondOrder { mass, ..none.clone() };
+    // r = (r_1 + r_2)/2.
+    let by_radius = Levers { one: 0.0, r: 0.5, r_squared: r, mu_l: 0.0, mu_l_r: 0.5 * mu * l };
+    match CLUTCH_PARAMETERS[by].name {
+        "mu" => by_levers(Levers { one: 0.0, r: 0.0, r_squared: 0.0, mu_l: l, mu_l_r: l * r }),
+        "l" => by_levers(Levers { one: 0.0, r: 0.0, r_squared: 0.0, mu_l: mu, mu_l_r: mu * r }),
+        "r_1" | "r_2" => by_levers(by_radius),
+        "k_p" => by_springs([gamma_1 / 4.0, 1.0 / (4.0 * gamma_1), gamma_2 / 4.0, 1.0 / (4.0 * gamma_2)], 0.0),
+        "gamma_1" => by_springs([k_p / 4.0, -k_p / (4.0 * gamma_1 * gamma_1), 0.0, 0.0], 0.0),
+        "gamma_2" => by_springs([0.0, 0.0, k_p / 4.0, -k_p / (4.0 * gamma_2 * gamma_2)], 0.0),
+        "k_f" => by_springs([0.0; 4], 1.0),
+        "c_A" => by_dampers([1.0, 0.0, 0.0, 0.0], 0.0),
+        "c_B" => by_dampers([0.0, 1.0, 0.0, 0.0], 0.0),
+        "c_C" => by_dampers([0.0, 0.0, 1.0, 0.0], 0.0),
+        "c_D" => by_dampers([0.0, 0.0, 0.0, 1.0], 0.0),
+        "c_f" => by_dampers([0.0; 4], 1.0),
+        "plate_mass" => by_mass(mass(0.0, 0.0, 1.0)),
+        "plate_inertia_x" => by_mass(mass(1.0, 0.0, 0.0)),
+        "plate_inertia_y" => by_mass(mass(0.0, 1.0, 0.0)),
+        name => unreachable!("{name} is no parameter of the clutch"),
+    }
+}
+
+/// diag(I_x, I_y, M_p/4, M_p/4, M_p/4, M_p/4).
+fn mass(inertia_x: f64, inertia_y: f64, plate_mass: f64) -> DMatrix<f64> {
+    let quarter = plate_mass / 4.0;
+    DMatrix::from_diagonal(&dvector![inertia_x, inertia_y, quarter, quarter, quarter, quarter])
+}
+
+/// The products of friction coefficient μ, mean radius r = (r_1 + r_2)/2 in m and thickness l in m that multiply springs and
+/// dampers; or their derivatives.
+struct Levers {
+    one: f64,
     r: f64,
-    l: f64,
+    r_squared: f64,
+    mu_l: f64,
+    mu_l_r: f64,
 }
 
-impl Geometry {
+impl Levers {
+    fn new(mu: f64, r: f64, l: f64) -> Self {
+        Self { one: 1.0, r, r_squared: r * r, mu_l: mu * l, mu_l_r: mu * l * r }
+    }
+
     /// K of equation 28 from the springs at A … D and f, or C of equation 29 from the dampers.
     #[rustfmt::skip]
-    fn assemble(&self, [a, b, c, d]: [f64; 4], f: f64) -> Matrix6<f64> {
-        let Self { mu, r, l } = *self;
-        Matrix6::new(
-            r*r*(a + b + 4.0*f), mu*l*r*(c + d),      r*(a + 2.0*f), -r*(b + 2.0*f), mu*l*c,        -mu*l*d,
-            -mu*l*r*(a + b),     r*r*(c + d + 4.0*f), -mu*l*a,       mu*l*b,         r*(c + 2.0*f), -r*(d + 2.0*f),
-            r*(a + 2.0*f),       0.0,                 a + 2.0*f,     0.0,            -f,            -f,
-            -r*(b + 2.0*f),      0.0,                 0.0,           b + 2.0*f,      -f,            -f,
-            0.0,                 r*(c + 2.0*f),       -f,            -f,             c + 2.0*f,     0.0,
-            0.0,                 -r*(d + 2.0*f),      -f,            -f,             0.0,           d + 2.0*f,
-        )
+    fn assemble(&self, [a, b, c, d]: [f64; 4], f: f64) -> DMatrix<f64> {
+        let Self { one, r, r_squared, mu_l, mu_l_r } = *self;
+        let matrix = Matrix6::new(
+            r_squared*(a + b + 4.0*f), mu_l_r*(c + d),            r*(a + 2.0*f),   -r*(b + 2.0*f),  mu_l*c,          -mu_l*d,
+            -mu_l_r*(a + b),           r_squared*(c + d + 4.0*f), -mu_l*a,         mu_l*b,          r*(c + 2.0*f),   -r*(d + 2.0*f),
+            r*(a + 2.0*f),             0.0,                       one*(a + 2.0*f), 0.0,             -one*f,          -one*f,
+            -r*(b + 2.0*f),            0.0,                       0.0,             one*(b + 2.0*f), -one*f,          -one*f,
+            0.0,                       r*(c + 2.0*f),             -one*f,          -one*f,          one*(c + 2.0*f), 0.0,
+            0.0,                       -r*(d + 2.0*f),            -one*f,          -one*f,          0.0,             one*(d + 2.0*f),
+        );
+        DMatrix::from_column_slice(6, 6, matrix.as_slice())
     }
 }
 
@@ -161,7 +227,7 @@ mod tests {
     const MU_ONLY: [&str; 1] = ["mu"];
 
     /// Rank by singular values: those of the null space are rounding, the others are stiffnesses.
-    fn rank(matrix: &Matrix6<f64>) -> usize {
+    fn rank(matrix: &DMatrix<f64>) -> usize {
         let singular = matrix.singular_values();
         singular.iter().filter(|&&value| value > 1e-10 * singular.max()).count()
     }
@@ -179,13 +245,13 @@ mod tests {
         let clutch = Clutch::new(&[], &MU_ONLY).unwrap();
         let mut matrices = clutch.matrices(&[0.25]);
         let r = 0.0975;
-        let rotation = Vector6::new(0.0, 1.0, 0.0, 0.0, -r, r);
-        assert!((matrices.stiffness * rotation).norm() < 1e-9 * matrices.stiffness.norm());
+        let rotation = dvector![0.0, 1.0, 0.0, 0.0, -r, r];
+        assert!((&matrices.stiffness * rotation).norm() < 1e-9 * matrices.stiffness.norm());
 
         matrices.stiffness[(0, 1)] *= -1.0;
         matrices.damping[(0, 1)] *= -1.0;
         assert_eq!(rank(&matrices.stiffness), 5);
-        let all = eigenvalues(state_matrix(&matrices.mass_diagonal, &matrices.damping, &matrices.stiffness)).unwrap();
+        let all = eigenvalues(matrices.state_matrix().unwrap()).unwrap();
         let divergent = all.iter().filter(|l| l.im == 0.0).map(|l| l.re).fold(f64::MIN, f64::max);
         assert!((divergent - 11.8).abs() < 0.1, "real eigenvalue {divergent}");
     }

@@ -6,6 +6,7 @@ mod second_order;
 
 pub use clutch::{CLUTCH_PARAMETERS, Clutch};
 pub use parameter::{Parameter, Range};
+pub use second_order::{Linearization, SecondOrder};
 
 use crate::numerics::eigenvalues::EigenvalueError;
 use nalgebra::Complex;
@@ -32,6 +33,9 @@ pub enum ModelError {
         /// What it must be.
         range: &'static str,
     },
+    /// The mass matrix cannot be inverted.
+    #[error("the mass matrix is singular")]
+    SingularMass,
     /// The eigenvalue solver failed.
     #[error(transparent)]
     Eigenvalues(#[from] EigenvalueError),
@@ -39,7 +43,8 @@ pub enum ModelError {
 
 /// A system whose eigenvalues depend on parameters.
 ///
-/// One call of [`Model::eigenvalues`] is one direct computation. Calls come from several threads at once.
+/// One call of [`Model::eigenvalues`] or of [`Model::linearization`] is one direct computation. Calls come from several threads
+/// at once.
 pub trait Model: Sync {
     /// All eigenvalues λ of the state matrix, in 1/s, at `point`: one value per uncertain input, in the order of the
     /// study's inputs and in physical units.
@@ -48,4 +53,20 @@ pub trait Model: Sync {
     ///
     /// A run that fails says why. It is never replaced by a guess.
     fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError>;
+
+    /// Whether [`Model::linearization`] has an answer.
+    fn has_derivatives(&self) -> bool {
+        false
+    }
+
+    /// The state matrix at `point` with its derivative by each uncertain input; `None` from models that know only their
+    /// eigenvalues.
+    ///
+    /// # Errors
+    ///
+    /// As [`Model::eigenvalues`].
+    fn linearization(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
+        let _ = point;
+        Ok(None)
+    }
 }

@@ -6,6 +6,8 @@
 //! Rigid-body motion makes zero a multiple, defective eigenvalue. Its computed copies scatter, and in rare cases (one
 //! clutch in some millions) the QR iteration circles around them for hundreds of sweeps. In another orthogonal basis the
 //! same matrix has other roundings and converges, so the iteration is given few sweeps, but several bases.
+//!
+//! The Schur form A = D S Q T Qᵀ D⁻¹ is kept for those who need invariant subspaces: D balances, the power of two S scales.
 
 use nalgebra::linalg::Schur;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
@@ -71,28 +73,76 @@ pub enum EigenvalueError {
 /// assert_eq!(frequencies, [-2.0, 2.0]);
 /// # Ok::<(), pcc::numerics::eigenvalues::EigenvalueError>(())
 /// ```
-pub fn eigenvalues(mut matrix: DMatrix<f64>) -> Result<Vec<Complex<f64>>, EigenvalueError> {
-    let (rows, columns) = matrix.shape();
-    if rows != columns || rows == 0 {
-        return Err(EigenvalueError::NotSquare { rows, columns });
-    }
-    if let Some(at) = matrix.iter().position(|entry| !entry.is_finite()) {
-        let (row, column) = (at % rows + 1, at / rows + 1);
-        return Err(EigenvalueError::NotFinite { row, column, value: matrix[(row - 1, column - 1)] });
-    }
-    let scale = power_of_two_above(matrix.amax());
-    matrix /= scale;
-    balance_parlett_reinsch(&mut matrix);
+pub fn eigenvalues(matrix: DMatrix<f64>) -> Result<Vec<Complex<f64>>, EigenvalueError> {
+    SchurForm::new(matrix).map(|schur| schur.eigenvalues())
+}
 
-    let iterations = SWEEPS_PER_ROW * rows;
-    for basis in 0..BASES {
-        let in_basis = if basis == 0 { matrix.clone() } else { reflected(&matrix, basis) };
-        if let Some(schur) = Schur::try_new(in_basis, f64::EPSILON, iterations) {
-            let (_, triangular) = schur.unpack();
-            return Ok(of_quasi_triangular(&triangular).iter().map(|lambda| lambda * scale).collect());
+/// A = D (s Q T Qᵀ) D⁻¹ with a diagonal D and a scalar s of powers of two, an orthogonal Q and T upper triangular but for
+/// 2 × 2 blocks on its diagonal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SchurForm {
+    balance: DVector<f64>,
+    scale: f64,
+    basis: DMatrix<f64>,
+    triangular: DMatrix<f64>,
+}
+
+impl SchurForm {
+    /// The Schur form of `matrix`.
+    ///
+    /// # Errors
+    ///
+    /// As [`eigenvalues`].
+    pub fn new(mut matrix: DMatrix<f64>) -> Result<Self, EigenvalueError> {
+        let (rows, columns) = matrix.shape();
+        if rows != columns || rows == 0 {
+            return Err(EigenvalueError::NotSquare { rows, columns });
         }
+        if let Some(at) = matrix.iter().position(|entry| !entry.is_finite()) {
+            let (row, column) = (at % rows + 1, at / rows + 1);
+            return Err(EigenvalueError::NotFinite { row, column, value: matrix[(row - 1, column - 1)] });
+        }
+        let scale = power_of_two_above(matrix.amax());
+        matrix /= scale;
+        let balance = balance_parlett_reinsch(&mut matrix);
+
+        let iterations = SWEEPS_PER_ROW * rows;
+        for number in 0..BASES {
+            let start = (number > 0).then(|| reflection(rows, number));
+            let in_basis = start.as_ref().map_or_else(|| matrix.clone(), |start| start * &matrix * start);
+            if let Some(schur) = Schur::try_new(in_basis, f64::EPSILON, iterations) {
+                let (basis, triangular) = schur.unpack();
+                let basis = start.map_or_else(|| basis.clone(), |start| start * &basis);
+                return Ok(Self { balance, scale, basis, triangular });
+            }
+        }
+        Err(EigenvalueError::NotConverged { iterations })
     }
-    Err(EigenvalueError::NotConverged { iterations })
+
+    /// All eigenvalues, in the order of the diagonal of T. The first of a conjugate pair has the positive imaginary part.
+    pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
+        of_quasi_triangular(&self.triangular).iter().map(|lambda| lambda * self.scale).collect()
+    }
+
+    /// D, the diagonal matrix that balances.
+    pub fn balance(&self) -> &DVector<f64> {
+        &self.balance
+    }
+
+    /// s, the power of two that multiplies T.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Q.
+    pub fn basis(&self) -> &DMatrix<f64> {
+        &self.basis
+    }
+
+    /// T.
+    pub fn triangular(&self) -> &DMatrix<f64> {
+        &self.triangular
+    }
 }
 
 /// The smallest power of two not below `magnitude`, within the range where it and its inverse are normal numbers.
@@ -100,12 +150,11 @@ fn power_of_two_above(magnitude: f64) -> f64 {
     if magnitude == 0.0 { 1.0 } else { magnitude.log2().ceil().clamp(-1000.0, 1000.0).exp2() }
 }
 
-/// H A H with the Householder reflection H = I − 2vvᵀ/vᵀv, v_i = 1 + basis/(i + 1): the same eigenvalues in a basis that
-/// shares no symmetry with the coordinate axes.
-fn reflected(matrix: &DMatrix<f64>, basis: usize) -> DMatrix<f64> {
-    let v = DVector::from_fn(matrix.nrows(), |i, _| 1.0 + basis as f64 / (i as f64 + 1.0));
-    let householder = DMatrix::identity(v.len(), v.len()) - &v * v.transpose() * (2.0 / v.norm_squared());
-    &householder * matrix * &householder
+/// The Householder reflection H = I − 2vvᵀ/vᵀv, v_i = 1 + number/(i + 1): a basis that shares no symmetry with the
+/// coordinate axes.
+fn reflection(size: usize, number: usize) -> DMatrix<f64> {
+    let v = DVector::from_fn(size, |i, _| 1.0 + number as f64 / (i as f64 + 1.0));
+    DMatrix::identity(size, size) - &v * v.transpose() * (2.0 / v.norm_squared())
 }
 
 /// Eigenvalues of the 1 × 1 and 2 × 2 diagonal blocks of a real Schur form. A block's eigenvalues are
@@ -167,9 +216,24 @@ mod tests {
             all.sort_by(|a, b| a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im)));
             all
         };
-        for basis in 1..BASES {
-            for (a, b) in sorted(&matrix).iter().zip(sorted(&reflected(&matrix, basis))) {
+        for number in 1..BASES {
+            let start = reflection(3, number);
+            for (a, b) in sorted(&matrix).iter().zip(sorted(&(&start * &matrix * &start))) {
                 assert!((a - b).norm() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn the_schur_form_gives_the_matrix_back() {
+        let matrix = dmatrix![0.0, 1.0, 2e6; -4e8, 0.1, 3.0; 0.5, -7.0, -1e3];
+        let schur = SchurForm::new(matrix.clone()).unwrap();
+        let mut product = schur.basis() * schur.triangular() * schur.basis().transpose() * schur.scale();
+        for i in 0..3 {
+            for j in 0..3 {
+                product[(i, j)] *= schur.balance()[i] / schur.balance()[j];
+                let tolerance = 1e-12 * schur.scale() * schur.balance()[i] / schur.balance()[j];
+                assert!((product[(i, j)] - matrix[(i, j)]).abs() < tolerance, "({i}, {j})");
             }
         }
     }

@@ -1,12 +1,14 @@
 //! Spectra: which eigenvalues are modes, in which order, and how components become eigenvalues again.
 
 mod clusters;
+mod derivatives;
 mod modes;
 mod recombination;
 mod summary;
 mod target;
 
 pub use clusters::{ClusterError, clusters};
+pub use derivatives::ReducedSystem;
 pub use modes::{Spectrum, SpectrumError};
 pub use recombination::{Component, Output, OutputKind, spectral_abscissa};
 pub use summary::{Block, ModeSummary, Summary};
