@@ -47,7 +47,7 @@ fn fit(design: &Set, outputs: &[Output]) -> Vec<Fitted> {
     (0..values[0].len())
         .map(|id| {
             let of_component: Vec<f64> = values.iter().map(|row| row[id]).collect();
-            let response = Response { values: &of_component, resolution: 0.0 };
+            let response = Response::of(&of_component, 0.0);
             minimum_norm::fit(&tables, response, &settings, &Learnt::nothing(INPUTS), &Silent).unwrap().0
         })
         .collect()

@@ -36,8 +36,8 @@ fn tables(reference: &Value) -> (BasisTables, Vec<f64>) {
 
 fn fitted<'a>(tables: &'a BasisTables, values: &'a [f64], terms: &[MultiIndex]) -> ActiveBasis<'a> {
     assert!(terms[0].is_constant());
-    let variance = Response { values, resolution: 0.0 }.variance().unwrap();
-    let mut basis = ActiveBasis::constant(tables, 3, values, variance, &Silent).unwrap();
+    let variance = Response::of(values, 0.0).variance().unwrap();
+    let mut basis = ActiveBasis::constant(tables, Response::of(values, 0.0), variance, 1.0, &Silent).unwrap();
     basis.extend(terms[1..].to_vec()).unwrap();
     assert_eq!(basis.indices(), terms, "no term depends on the others");
     basis

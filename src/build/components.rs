@@ -38,14 +38,18 @@ impl<'a> ComponentFit<'a> {
     pub fn new(study: &'a Study) -> Result<Self, IndexSetError> {
         let inputs = study.inputs.dimension();
         let degree = usize::from(study.fit.method.max_degree());
+        let derivatives = if study.uses_derivatives() { inputs } else { 0 };
         let candidates = match &study.fit.method {
             FitMethod::Stepwise(settings) => {
                 let hyperbolic = Hyperbolic { inputs, q_norm: settings.q_norm };
                 MethodCandidates::Shells(hyperbolic.shells(settings.max_degree)?)
             }
-            FitMethod::Omp(settings) | FitMethod::Auto(settings) => {
-                MethodCandidates::Norms(Candidates::new(inputs, settings.max_degree, study.design.maximum)?)
-            }
+            FitMethod::Omp(settings) | FitMethod::Auto(settings) => MethodCandidates::Norms(Candidates::new(
+                inputs,
+                settings.max_degree,
+                study.design.maximum,
+                derivatives,
+            )?),
             FitMethod::MinimumNorm(_) => MethodCandidates::None,
         };
         let recurrences =
@@ -59,22 +63,24 @@ impl<'a> ComponentFit<'a> {
         self.memories = vec![Memory::new(self.study.inputs.dimension()); count];
     }
 
-    /// Fits `values`, a list per component with one value per point of `samples`. `None` if the method asks for a larger
+    /// Fits `responses`, one per component, to what the model answered at the points of `samples`. `None` if the method asks for a larger
     /// design, as long as the design `can_grow`; else each component settles for what the design carries.
     pub fn fit(
         &mut self,
         samples: &Samples,
-        values: &[Vec<f64>],
-        resolutions: &[f64],
+        responses: &[Response<'_>],
         can_grow: bool,
         observer: &dyn Observer,
     ) -> Result<Option<Vec<ComponentResult>>, Interrupted> {
         let degree = usize::from(self.study.fit.method.max_degree());
-        let tables = BasisTables::new(samples, &self.recurrences, degree);
-        observer.begin("fitting components", values.len() as u64);
-        let found = try_map(values.len(), |id| {
-            let response = Response { values: &values[id], resolution: resolutions[id] };
-            let found = self.component(&tables, response, &self.memories[id], can_grow, observer);
+        let has_derivatives = responses.iter().any(|response| response.gradients.is_some());
+        let tables = match has_derivatives {
+            true => BasisTables::with_slopes(samples, &self.recurrences, degree),
+            false => BasisTables::new(samples, &self.recurrences, degree),
+        };
+        observer.begin("fitting components", responses.len() as u64);
+        let found = try_map(responses.len(), |id| {
+            let found = self.component(&tables, responses[id], &self.memories[id], can_grow, observer);
             observer.advance(1);
             found
         });

@@ -2,10 +2,11 @@
 
 use super::BuildError;
 use crate::design::{NestedLatinHypercube, Run, RunError, Runner, Samples};
-use crate::model::ModelError;
+use crate::model::Model;
 use crate::progress::Observer;
+use crate::regression::Gradients;
 use crate::spectrum::{ClusterError, Output, Spectrum, components as components_of};
-use crate::study::{DesignKind, Study};
+use crate::study::{Derivatives, DesignKind, Study};
 
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
 const SOLVER_ACCURACY: f64 = 1e-13;
@@ -19,14 +20,17 @@ pub(super) struct Evaluations<'a> {
 }
 
 impl<'a> Evaluations<'a> {
-    pub fn new(study: &'a Study) -> Result<Self, ModelError> {
+    pub fn new(study: &'a Study, model: Box<dyn Model>) -> Result<Self, BuildError> {
+        if study.fit.derivatives == Derivatives::Always && !model.has_derivatives() {
+            return Err(BuildError::NoDerivatives);
+        }
         Ok(Self {
             study,
             design: match study.design.kind {
                 DesignKind::NestedLhs => NestedLatinHypercube::new(study.inputs.dimension(), study.seed),
                 DesignKind::NestedMaximinLhs => NestedLatinHypercube::spread_out(study.inputs.dimension(), study.seed),
             },
-            runner: Runner::new(study)?,
+            runner: Runner::of(study, model).with_derivatives(study.uses_derivatives()),
             runs: Vec::new(),
         })
     }
@@ -80,6 +84,34 @@ impl<'a> Evaluations<'a> {
             components.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
         }
         Ok(components)
+    }
+
+    /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come without. Runs in
+    /// which an output's modes cannot be separated from the rest of the spectrum have none for its components.
+    pub fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
+        if !self.runner.has_derivatives() {
+            return None;
+        }
+        let (samples, inputs) = (self.samples(), self.study.inputs.inputs());
+        let mut gradients = Vec::new();
+        for output in outputs {
+            let slopes = |(i, run): (usize, &Run)| Some((i, output.differentiate(run.reduced.as_ref()?)?));
+            let found: Vec<(usize, Vec<Vec<f64>>)> = self.runs.iter().enumerate().filter_map(slopes).collect();
+            for position in 0..output.components.len() {
+                // ∂y/∂ξ_j = ∂y/∂x_j · dx_j/dξ_j
+                let standardized = inputs.iter().enumerate().flat_map(|(j, input)| {
+                    let chained = |(i, by_input): &(usize, Vec<Vec<f64>>)| {
+                        by_input[j][position] * input.marginal.slope(samples.point(*i)[j])
+                    };
+                    found.iter().map(chained).collect::<Vec<f64>>()
+                });
+                gradients.push(Gradients {
+                    slopes: standardized.collect(),
+                    points: found.iter().map(|(i, _)| *i).collect(),
+                });
+            }
+        }
+        Some(gradients)
     }
 
     /// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver.

@@ -12,8 +12,9 @@ use evaluations::Evaluations;
 use crate::design::RunError;
 use crate::fit::Stop;
 use crate::index_set::IndexSetError;
-use crate::model::ModelError;
+use crate::model::{Model, ModelError};
 use crate::progress::{Interrupted, Observer};
+use crate::regression::Response;
 use crate::spectrum::{ClusterError, Output};
 use crate::study::Study;
 use crate::surrogate::Surrogate;
@@ -36,6 +37,9 @@ pub enum BuildError {
         /// Why.
         cause: ClusterError,
     },
+    /// The study asks for derivatives, which the model does not have.
+    #[error("fit.derivatives: the model has no derivatives; remove the key or set it to \"auto\" or false")]
+    NoDerivatives,
     /// There are too many candidate terms.
     #[error(transparent)]
     IndexSet(#[from] IndexSetError),
@@ -71,8 +75,13 @@ impl BuildError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
+    build_of(study, study.model()?, observer)
+}
+
+/// The build with another model in place of the study's.
+fn build_of(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
     let mut fit = ComponentFit::new(study)?;
-    let mut evaluations = Evaluations::new(study)?;
+    let mut evaluations = Evaluations::new(study, model)?;
     let mut levels = Vec::new();
     let mut grouping: Vec<Output> = Vec::new();
     let mut former: Option<Former> = None;
@@ -89,8 +98,15 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
         }
         let next = study.design.next_size(size);
         let values = evaluations.components(&outputs)?;
+        let gradients = evaluations.gradients(&outputs);
         let resolutions = evaluations.resolutions(&outputs);
-        let fitted = fit.fit(&evaluations.samples(), &values, &resolutions, next.is_some(), observer)?;
+        let responses: Vec<Response<'_>> = (0..values.len())
+            .map(|id| {
+                let gradients = gradients.as_ref().map(|all| &all[id]);
+                Response { gradients, ..Response::of(&values[id], resolutions[id]) }
+            })
+            .collect();
+        let fitted = fit.fit(&evaluations.samples(), &responses, next.is_some(), observer)?;
         grouping.clone_from(&outputs);
         if let (Some(next), None) = (next, &fitted) {
             size = next;
@@ -98,7 +114,7 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
         }
         let fitted = fitted.unwrap_or_default();
         let needs_no_points = fitted.iter().all(|fit| fit.result.stop != Stop::DesignExhausted);
-        let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, &levels);
+        let mut surrogate = record::surrogate(study, &evaluations, outputs, &fitted, gradients.as_deref(), &levels);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let tolerance = study.fit.proportion_tolerance;
         let is_last = next.is_none() || (needs_no_points && tolerance.is_none());

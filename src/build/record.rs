@@ -4,6 +4,7 @@ use super::components::ComponentResult;
 use super::evaluations::Evaluations;
 use crate::design::NestedLatinHypercube;
 use crate::fit::{Fitted, Stop};
+use crate::regression::Gradients;
 use crate::spectrum::{Component, Output};
 use crate::study::{FitMethod, Study};
 use crate::surrogate::{
@@ -22,6 +23,7 @@ pub(super) fn surrogate(
     evaluations: &Evaluations<'_>,
     outputs: Vec<Output>,
     fitted: &[ComponentResult],
+    gradients: Option<&[Gradients]>,
     levels: &[u64],
 ) -> Surrogate {
     let mut components: Vec<&Component> = outputs.iter().flat_map(|output| &output.components).collect();
@@ -36,7 +38,7 @@ pub(super) fn surrogate(
         inputs: study.inputs.clone(),
         expansions: fitted.iter().zip(components).map(|(fit, component)| expansion(&fit.result, component)).collect(),
         outputs,
-        training: training(study, fitted, evaluations.runs().len() as u64, levels.to_vec()),
+        training: training(study, fitted, gradients, evaluations.runs().len(), levels.to_vec()),
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         certificates: Vec::new(),
@@ -50,7 +52,7 @@ fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
         r2: fitted.errors.map(|errors| errors.r2),
         s2: fitted.errors.and_then(|errors| errors.s2),
         corrected_s2: fitted.errors.and_then(|errors| errors.corrected_s2),
-        leave_out: LeaveOut::Row,
+        leave_out: if fitted.derivative_weight.is_some() { LeaveOut::Run } else { LeaveOut::Row },
         degree: fitted.degree,
         stop: match fitted.stop {
             Stop::Accurate => StopReason::Accurate,
@@ -61,7 +63,13 @@ fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
     }
 }
 
-fn training(study: &Study, fitted: &[ComponentResult], runs: u64, levels: Vec<u64>) -> Training {
+fn training(
+    study: &Study,
+    fitted: &[ComponentResult],
+    gradients: Option<&[Gradients]>,
+    runs: usize,
+    levels: Vec<u64>,
+) -> Training {
     let setting = |key: &str, value| Setting { key: key.to_owned(), value };
     let number = |key: &str, value| setting(key, SettingValue::Number(value));
     let method = &study.fit.method;
@@ -78,24 +86,33 @@ fn training(study: &Study, fitted: &[ComponentResult], runs: u64, levels: Vec<u6
         settings.push(number("proportion_tolerance", tolerance));
     }
     if let FitMethod::Auto(_) = method {
-        let solvers: Vec<&str> = fitted.iter().map(|fit| fit.solver).collect();
+        let solvers: Vec<String> = fitted.iter().map(|fit| fit.solver.to_owned()).collect();
         settings.push(setting("chosen", SettingValue::Text(summary_of(&solvers))));
     }
+    // Runs whose derivatives entered the fit of every component that takes any.
+    let with_gradients = |i: usize| gradients.is_some_and(|all| all.iter().all(|one| one.points.contains(&i)));
+    if gradients.is_some() {
+        let weights = fitted.iter().map(|fit| fit.result.derivative_weight.map_or("-".to_owned(), |w| w.to_string()));
+        settings.push(setting("derivatives", SettingValue::Flag(true)));
+        settings.push(setting("derivative_weights", SettingValue::Text(summary_of(&weights.collect::<Vec<_>>()))));
+    }
+    let gradients = (0..runs).filter(|&i| with_gradients(i)).count() as u64;
+    let runs = runs as u64;
     Training {
         method: method.name().to_owned(),
         settings,
         design: study.design.kind.name().to_owned(),
         seed: study.seed,
         levels,
-        counts: Counts { values: runs, gradients: 0, failed: 0, final_mesh: runs, direct_computations: runs },
+        counts: Counts { values: runs, gradients, failed: 0, final_mesh: runs, direct_computations: runs },
     }
 }
 
 /// One name if all are equal, else all in the order of the components.
-fn summary_of(solvers: &[&str]) -> String {
-    match solvers {
-        [first, rest @ ..] if rest.iter().all(|solver| solver == first) => (*first).to_owned(),
-        _ => solvers.join(" "),
+fn summary_of(words: &[String]) -> String {
+    match words {
+        [first, rest @ ..] if rest.iter().all(|word| word == first) => first.clone(),
+        _ => words.join(" "),
     }
 }
 

@@ -1,9 +1,10 @@
 //! Direct computations at points of the input space, with errors that name the point.
 
-use crate::model::{Model, ModelError};
+use crate::model::{Linearization, Model, ModelError};
+use crate::numerics::eigenvalues::SchurForm;
 use crate::parallel::try_map;
 use crate::progress::{Interrupted, Observer};
-use crate::spectrum::{Spectrum, SpectrumError};
+use crate::spectrum::{ReducedSystem, Spectrum, SpectrumError};
 use crate::study::Study;
 use nalgebra::Complex;
 use thiserror::Error;
@@ -54,12 +55,16 @@ pub struct Run {
     pub spectrum: Spectrum,
     /// Eigenvalues of the study's modes.
     pub eigenvalues: Vec<Complex<f64>>,
+    /// The system with its derivatives, as the study's modes see it: if derivatives were asked for and the modes can be
+    /// separated from the rest of the spectrum.
+    pub reduced: Option<ReducedSystem>,
 }
 
 /// Runs the model of a study, and sees to it that all points have the same number of oscillating modes.
 pub struct Runner<'a> {
     study: &'a Study,
     model: Box<dyn Model>,
+    with_derivatives: bool,
     /// The first point, and how many modes oscillate there.
     first: Option<(Vec<f64>, usize)>,
     modes: Vec<usize>,
@@ -72,7 +77,23 @@ impl<'a> Runner<'a> {
     ///
     /// [`ModelError`].
     pub fn new(study: &'a Study) -> Result<Self, ModelError> {
-        Ok(Self { study, model: study.model()?, first: None, modes: Vec::new() })
+        Ok(Self::of(study, study.model()?))
+    }
+
+    /// Runs `model` in place of the study's.
+    pub fn of(study: &'a Study, model: Box<dyn Model>) -> Self {
+        Self { study, model, with_derivatives: false, first: None, modes: Vec::new() }
+    }
+
+    /// Asks the model for derivatives, too, if it has them.
+    #[must_use]
+    pub fn with_derivatives(self, wanted: bool) -> Self {
+        Self { with_derivatives: wanted && self.model.has_derivatives(), ..self }
+    }
+
+    /// Whether runs come with derivatives.
+    pub fn has_derivatives(&self) -> bool {
+        self.with_derivatives
     }
 
     /// Frequency ranks of the study's modes; empty before the first run.
@@ -88,22 +109,32 @@ impl<'a> Runner<'a> {
     pub fn run(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Run>, RunError> {
         let spectra = try_map(points.len(), |i| {
             observer.check()?;
-            let spectrum = self.direct_computation(&points[i])?;
+            let answer = self.direct_computation(&points[i])?;
             observer.advance(1);
-            Ok::<_, RunError>(spectrum)
+            Ok::<_, RunError>(answer)
         })?;
         // Every point first: where the number of modes changes, a missing mode is the lesser news.
-        for (point, spectrum) in points.iter().zip(&spectra) {
+        for (point, (spectrum, _)) in points.iter().zip(&spectra) {
             self.check_mode_count(point, spectrum.count())?;
         }
-        points.iter().zip(spectra).map(|(point, spectrum)| self.select(point, spectrum)).collect()
+        points.iter().zip(spectra).map(|(point, (spectrum, reduced))| self.select(point, spectrum, reduced)).collect()
     }
 
-    fn direct_computation(&self, point: &[f64]) -> Result<Spectrum, RunError> {
+    fn direct_computation(&self, point: &[f64]) -> Result<(Spectrum, Option<ReducedSystem>), RunError> {
         let inputs = &self.study.inputs;
-        let eigenvalues =
-            self.model.eigenvalues(point).map_err(|cause| RunError::Model { point: inputs.describe(point), cause })?;
-        Spectrum::new(&eigenvalues).map_err(|cause| RunError::Spectrum { point: inputs.describe(point), cause })
+        let failed = |cause| RunError::Model { point: inputs.describe(point), cause };
+        let unusable = |cause| RunError::Spectrum { point: inputs.describe(point), cause };
+        let linearization = if self.with_derivatives { self.model.linearization(point).map_err(failed)? } else { None };
+        let Some(Linearization { state_matrix, derivatives }) = linearization else {
+            let eigenvalues = self.model.eigenvalues(point).map_err(failed)?;
+            return Ok((Spectrum::new(&eigenvalues).map_err(unusable)?, None));
+        };
+        let schur = SchurForm::new(state_matrix).map_err(|cause| failed(cause.into()))?;
+        let spectrum = Spectrum::new(&schur.eigenvalues()).map_err(unusable)?;
+        // A missing mode is reported once the number of modes is known to be the same everywhere.
+        let modes = self.study.spectrum.modes.ranks(spectrum.count()).ok();
+        let reduced = modes.and_then(|modes| ReducedSystem::new(&schur, &derivatives, &spectrum, &modes));
+        Ok((spectrum, reduced))
     }
 
     fn check_mode_count(&mut self, point: &[f64], count: usize) -> Result<(), RunError> {
@@ -121,11 +152,11 @@ impl<'a> Runner<'a> {
     }
 
     /// What the study asks of a spectrum.
-    fn select(&mut self, point: &[f64], spectrum: Spectrum) -> Result<Run, RunError> {
+    fn select(&mut self, point: &[f64], spectrum: Spectrum, reduced: Option<ReducedSystem>) -> Result<Run, RunError> {
         let Study { inputs, spectrum: asked, .. } = self.study;
         let unusable = |cause| RunError::Spectrum { point: inputs.describe(point), cause };
         self.modes = asked.modes.ranks(spectrum.count()).map_err(unusable)?;
         let eigenvalues = self.modes.iter().map(|&mode| spectrum.mode(mode)).collect::<Result<_, _>>();
-        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum })
+        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum, reduced })
     }
 }

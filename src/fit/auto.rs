@@ -14,8 +14,8 @@ use crate::study::Smooth;
 /// Pursuit is given up for larger designs once its mean square error is so many times that of the other fit.
 const HOPELESS: f64 = 4.0;
 
-/// Designs smaller than this say little of either.
-const ENOUGH_POINTS: usize = 20;
+/// Fewer values and derivatives say little of either.
+const ENOUGH_EQUATIONS: usize = 20;
 
 /// What the fit of a component on one design passes on to the next larger one.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +54,8 @@ pub fn fit(
     }
     let pursued = omp::fit(tables, response, candidates, settings, observer)?;
     let error = |fitted: &Fitted| 1.0 - fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY);
-    let is_hopeless = error(&pursued) >= HOPELESS * error(&smooth) && response.values.len() >= ENOUGH_POINTS;
+    let is_enough = response.equations(tables.inputs()).rows() >= ENOUGH_EQUATIONS;
+    let is_hopeless = error(&pursued) >= HOPELESS * error(&smooth) && is_enough;
     memory.tries_pursuit = !is_hopeless;
     if error(&pursued) < error(&smooth) { Ok((pursued, "omp", memory)) } else { Ok((smooth, "minimum-norm", memory)) }
 }

@@ -9,38 +9,32 @@
 //! <https://gaussianprocess.org/gpml/>). Where least squares must leave out all but some N/2 terms, and choosing them
 //! costs accuracy, this uses every run for every term.
 //!
-//! The r + 1 parameters of the prior minimise the leave-one-out error, known in closed form,
+//! What a fit without run i misses there is known in closed form: with A = (K + νI)⁻¹, its block A_i for the equations of
+//! run i, and c = A y,
 //!
-//! Δ_i = (A y)_i/A_ii,   A = (K + νI)⁻¹,
+//! Δ_i = A_i⁻¹ c_i,
 //!
-//! so a design of N runs is judged without a single refit. That the parameters were chosen by it makes the error look
-//! about twice smaller than it is; at the points that a grown design adds, the prior of the smaller one is judged blindly.
+//! so a design of N runs is judged without a single refit. Without derivatives a run is one value and Δ_i = c_i/A_ii. The
+//! r + 1 parameters of the prior are found by this error (`prior_search`); that makes it look up to twice smaller
+//! than it is. At the points that a grown design adds, the prior of the smaller one is judged blindly.
+//!
+//! Derivatives are equations like values: K holds their covariances (Solak, Murray-Smith, Leithead, Leith and Rasmussen
+//! 2003). Where they are not as good as the values, ν of theirs grows by the inverse square of a weight.
 //!
 //! Finally terms too small to matter beside that error are dropped: the expansion is sparse.
 
-use super::prior::Prior;
+use super::prior_search::{Found, Search, most_runs};
+use super::regularized::Regularized;
 use super::{BlindResiduals, Fitted, Stop};
 use crate::index_set::{IndexSet, MultiIndex};
-use crate::numerics::minimize::{Limits, minimize};
-use crate::numerics::positive_definite::inverse;
 use crate::progress::{Interrupted, Observer};
-use crate::regression::{BasisTables, ErrorMeasures, Response};
+use crate::regression::{BasisTables, Equations, ErrorMeasures, Response};
 use crate::statistics::Moments;
 use crate::study::Smooth;
 use nalgebra::{DMatrix, DVector};
 
-/// ν relative to the mean diagonal of K: enough for a Cholesky factorisation in double precision, and far below the
-/// errors that matter.
-const NUGGET: f64 = 1e-11;
-
-/// Powers of ten by which ν may rise where rounding makes K indefinite.
-const NUGGETS: i32 = 5;
-
-/// Candidates per run: prior variances beyond them are negligible (2, 4 and 8 gave the same results).
-const CANDIDATES_PER_RUN: usize = 3;
-
-/// The prior is found on so many points at most, the first ones: each step of the search costs the cube of their number.
-const PRIOR_POINTS: usize = 300;
+/// Candidates per equation: prior variances beyond them are negligible (2, 4 and 8 gave the same results).
+const CANDIDATES_PER_EQUATION: usize = 2;
 
 /// Dropped terms together are below this share of the leave-one-out error.
 const DROPPED_SHARE: f64 = 0.1;
@@ -49,28 +43,20 @@ const DROPPED_SHARE: f64 = 0.1;
 /// nothing that matters.
 const SETTLED: f64 = 3e-5;
 
+/// Growth of the points a search can use that is worth another search.
+const WORTH_A_SEARCH: f64 = 1.3;
+
 /// So many new blind residuals need no older ones beside them.
 const ENOUGH_BLIND: usize = 40;
-
-/// So many more points than parameters of the prior are needed for a search; with fewer, it would fit noise.
-const LEAST_SURPLUS: usize = 3;
-
-/// A larger design is expected to lower ½ ln of the mean square error by this.
-const EXPECTED_GAIN: f64 = 0.1;
 
 /// Refinements of the coefficients: each gains about five digits of the sixteen.
 const REFINEMENTS: usize = 3;
 
-/// The search for the prior ends when ½ ln of the mean square error falls by less, one per mille of the error.
-const LIMITS: Limits = Limits { iterations: 60, decrease: 1e-3 };
-
 /// What the fit of a component on one design leaves for the next larger one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Learnt {
-    /// The prior that was best; the next search starts from it.
-    pub prior: Prior,
-    /// ½ ln of the mean square leave-one-out error, relative to the variance.
-    error: Option<f64>,
+    /// The prior and weight of derivatives that were best, and their error; the next search starts from them.
+    found: Found,
     /// Number of points of the design on which it was found.
     points: usize,
     /// Blind residuals of the last points.
@@ -80,7 +66,7 @@ pub struct Learnt {
 impl Learnt {
     /// Before the first design.
     pub fn nothing(inputs: usize) -> Self {
-        Self { prior: Prior::start(inputs), error: None, points: 0, blind: None }
+        Self { found: Found::nothing(inputs), points: 0, blind: None }
     }
 }
 
@@ -108,7 +94,7 @@ impl Learnt {
 /// let samples = design.samples(|_, u| 2.0 * u - 1.0);
 /// let values: Vec<f64> = samples.points().map(|x| (0.5 * x[0] + 0.2 * x[1]).exp()).collect();
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(10); 2], 10);
-/// let response = Response { values: &values, resolution: 1e-13 };
+/// let response = Response::of(&values, 1e-13);
 /// let settings = Smooth { max_degree: 10, s2_target: 0.999 };
 /// let (fitted, _) = fit(&tables, response, &settings, &Learnt::nothing(2), &Silent)?;
 /// assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8);
@@ -121,20 +107,20 @@ pub fn fit(
     former: &Learnt,
     observer: &dyn Observer,
 ) -> Result<(Fitted, Learnt), Interrupted> {
-    let inputs = former.prior.inputs();
+    let inputs = tables.inputs();
     let Some(variance) = response.variance() else {
         return Ok((Fitted::constant(inputs, response.values), former.clone()));
     };
     let problem = Problem::new(tables, response, variance.sqrt(), settings.max_degree);
-    let (prior, error) = problem.best_prior(former, observer)?;
+    let found = problem.best_prior(former, observer)?;
     observer.check()?;
-    let Some(solution) = problem.solve(&prior) else {
-        let mean = Fitted::mean(tables, inputs, response.values, variance, observer)?;
+    let Some(solution) = problem.solve(&found) else {
+        let mean = Fitted::mean(tables, response, variance, observer)?;
         return Ok((mean, Learnt::nothing(inputs)));
     };
-    let unchanged = (prior == former.prior).then_some(&solution);
-    let blind = problem.blind_residuals(former, unchanged, error);
-    let learnt = Learnt { prior, error: Some(error), points: response.values.len(), blind };
+    let is_unchanged = (&found.prior, found.weight) == (&former.found.prior, former.found.weight);
+    let blind = problem.blind_residuals(former, is_unchanged.then_some(&solution), found.error);
+    let learnt = Learnt { found, points: response.values.len(), blind };
     let (indices, mut coefficients, residuals, left_out) = solution.without_negligible_terms(problem.resolution);
     coefficients.iter_mut().for_each(|coefficient| *coefficient *= problem.scale);
     coefficients[0] += problem.mean;
@@ -147,17 +133,19 @@ pub fn fit(
         errors: Some(ErrorMeasures { r2: 1.0 - mean_square(&residuals), s2: Some(s2), corrected_s2: None }),
         blind_residuals: learnt.blind.clone(),
         leave_one_out_residuals: Some(left_out.iter().map(|residual| residual * problem.scale).collect()),
+        derivative_weight: response.gradients.map(|_| learnt.found.weight),
         degree,
         stop: if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted },
     };
     Ok((fitted, learnt))
 }
 
-/// Standardized values on a design.
+/// Standardized values and derivatives on a design.
 struct Problem<'a> {
     tables: &'a BasisTables,
-    /// (y − mean)/scale.
-    values: DVector<f64>,
+    equations: Equations,
+    /// (y − mean)/scale, then the derivatives divided by the scale.
+    targets: DVector<f64>,
     mean: f64,
     scale: f64,
     /// Rounding of the values, relative to `scale`.
@@ -168,6 +156,7 @@ struct Problem<'a> {
 /// Coefficients of the standardized values, and what is known of their errors.
 struct Solution {
     indices: Vec<MultiIndex>,
+    /// Of the values alone, as are the residuals.
     columns: DMatrix<f64>,
     coefficients: DVector<f64>,
     residuals: DVector<f64>,
@@ -177,34 +166,32 @@ struct Solution {
 impl<'a> Problem<'a> {
     fn new(tables: &'a BasisTables, response: Response<'_>, scale: f64, degree: u16) -> Self {
         let mean = Moments::of(response.values).mean();
-        let standardized = response.values.iter().map(|value| (value - mean) / scale);
-        Self {
-            tables,
-            values: DVector::from_iterator(response.values.len(), standardized),
-            mean,
-            scale,
-            resolution: response.resolution / scale,
-            degree,
-        }
+        let samples = response.values.len();
+        let centered = response.targets().enumerate().map(|(row, y)| if row < samples { y - mean } else { y });
+        let targets: Vec<f64> = centered.map(|y| y / scale).collect();
+        let equations = response.equations(tables.inputs());
+        let resolution = response.resolution / scale;
+        Self { tables, equations, targets: DVector::from_vec(targets), mean, scale, resolution, degree }
     }
 
-    /// The prior with the smallest leave-one-out error found from the former one, and that error. A start that led into a
-    /// side valley on a smaller design is recognised by an error that no longer falls; then the search is repeated from the
-    /// neutral prior.
-    fn best_prior(&self, former: &Learnt, observer: &dyn Observer) -> Result<(Prior, f64), Interrupted> {
-        if self.values.len() < former.prior.parameters().len() + LEAST_SURPLUS {
-            let neutral = Prior::start(former.prior.inputs());
-            return Ok((neutral.clone(), self.error_of(&neutral)));
+    /// The prior with the smallest leave-one-out error found from the former one.
+    fn best_prior(&self, former: &Learnt, observer: &dyn Observer) -> Result<Found, Interrupted> {
+        let Self { tables, equations, targets, resolution, degree, .. } = self;
+        let search = Search { tables, equations, targets, resolution: *resolution, degree: *degree };
+        let kept = |known: &Found| {
+            let error = search.error_of(&known.prior, known.weight);
+            Found { error, ..known.clone() }
+        };
+        let inputs = tables.inputs();
+        if !search.is_determined() {
+            return Ok(kept(&Found::nothing(inputs)));
         }
-        if former.points >= PRIOR_POINTS || former.error.is_some_and(|error| error < SETTLED.ln()) {
-            return Ok((former.prior.clone(), self.error_of(&former.prior)));
+        let is_settled = former.found.error < SETTLED.ln();
+        let used = |points: usize| points.min(most_runs(equations, inputs)) as f64;
+        if is_settled || used(equations.samples()) < WORTH_A_SEARCH * used(former.points) {
+            return Ok(kept(&former.found));
         }
-        let found = self.search(&former.prior, observer)?;
-        if former.error.is_none_or(|before| found.1 < before - EXPECTED_GAIN) {
-            return Ok(found);
-        }
-        let neutral = self.search(&Prior::start(former.prior.inputs()), observer)?;
-        Ok(if neutral.1 < found.1 { neutral } else { found })
+        search.best(&former.found, observer)
     }
 
     /// What the prior of a former design, chosen without the points that are new here, misses at each of them. Residuals
@@ -212,95 +199,53 @@ impl<'a> Problem<'a> {
     /// `unchanged` is the solution with the former prior, if it is known.
     fn blind_residuals(&self, former: &Learnt, unchanged: Option<&Solution>, error: f64) -> Option<BlindResiduals> {
         let first = former.points;
-        if first == 0 || first >= self.values.len() {
+        if first == 0 || first >= self.equations.samples() {
             return former.blind.clone();
         }
         let left_out = match unchanged {
             Some(solution) => solution.left_out.clone(),
-            None => self.solve(&former.prior)?.left_out,
+            None => self.solve(&former.found)?.left_out,
         };
         let new = left_out.iter().skip(first).map(|residual| residual * self.scale);
         if new.len() >= ENOUGH_BLIND {
             return Some(BlindResiduals { first, values: new.collect() });
         }
-        let fallen = former.error.map_or(1.0, |before| (error - before).exp());
+        let fallen = if former.found.error.is_finite() { (error - former.found.error).exp() } else { 1.0 };
         let mut blind = former.blind.clone().unwrap_or(BlindResiduals { first, values: Vec::new() });
         blind.values.iter_mut().for_each(|residual| *residual *= fallen);
         blind.values.extend(new);
         Some(blind)
     }
 
-    /// A local minimum, rounded, and ½ ln of the mean square error there.
-    fn search(&self, start: &Prior, observer: &dyn Observer) -> Result<(Prior, f64), Interrupted> {
-        let lowest = minimize(start.parameters(), &Prior::bounds(start.inputs()), LIMITS, |parameters| {
-            observer.check()?;
-            Ok(self.leave_one_out_error(&Prior::with(parameters)))
-        })?;
-        let prior = Prior::rounded(&lowest);
-        let error = self.error_of(&prior);
-        Ok((prior, error))
-    }
-
-    /// ½ ln of the mean square error, infinite if it cannot be computed.
-    fn error_of(&self, prior: &Prior) -> f64 {
-        self.leave_one_out_error(prior).map_or(f64::INFINITY, |(error, _)| error)
-    }
-
-    /// ½ ln of the mean of Δ², no smaller than rounding, with its derivatives by the parameters of the prior.
-    ///
-    /// With A = (K + νI)⁻¹, c = Ay and Δ_i = c_i/A_ii: ΣΔdΔ = Σ G_ab dK_ab with
-    /// G = −(A u) cᵀ + A diag(t) A, u_i = Δ_i/A_ii, t_i = Δ_i c_i/A_ii².
-    fn leave_one_out_error(&self, prior: &Prior) -> Option<(f64, Vec<f64>)> {
-        let samples = self.values.len().min(PRIOR_POINTS);
-        let values = self.values.rows(0, samples);
-        let kernel = prior.kernel(self.tables, samples, self.degree);
-        let (inverse, nugget) = regularized_inverse(&kernel.matrix)?;
-        let weighted = &inverse * values;
-        let diagonal = inverse.diagonal();
-        let left_out = weighted.component_div(&diagonal);
-        let floor = samples as f64 * self.resolution.max(f64::EPSILON).powi(2);
-        let square = left_out.norm_squared() + floor;
-        let direct = &inverse * left_out.component_div(&diagonal);
-        let mut scaled = inverse.clone();
-        for (k, mut column) in scaled.column_iter_mut().enumerate() {
-            column.scale_mut(left_out[k] * weighted[k] / (diagonal[k] * diagonal[k]));
-        }
-        let mut by_matrix = scaled * inverse;
-        by_matrix.ger(-1.0, &direct, &weighted, 1.0);
-        // ν is proportional to the trace of K.
-        let nugget_part = nugget / kernel.matrix.trace() * by_matrix.trace();
-        for k in 0..samples {
-            by_matrix[(k, k)] += nugget_part;
-        }
-        let value = 0.5 * (square / samples as f64).ln();
-        let gradient = kernel.gradient(&by_matrix).into_iter().map(|slope| slope / square).collect();
-        Some((value, gradient)).filter(|(value, _): &(f64, Vec<f64>)| value.is_finite())
-    }
-
     /// The weighted minimum-norm coefficients on the likeliest terms, refined: with B = Ψ S^{1/2}, residuals of
-    /// (B, √ν I)(x, t) = y are formed at full precision and solved for again by the explicit inverse.
-    fn solve(&self, prior: &Prior) -> Option<Solution> {
-        let samples = self.values.len();
-        let indices = prior.likeliest(CANDIDATES_PER_RUN * samples, self.degree);
-        let columns = self.tables.columns(&indices);
+    /// (B, diag √ν)(x, t) = y are formed at full precision and solved for again by the explicit inverse.
+    fn solve(&self, Found { prior, weight, .. }: &Found) -> Option<Solution> {
+        let weight = *weight;
+        let samples = self.equations.samples();
+        let alone = Equations::values_alone(samples);
+        let equations = if weight > 0.0 { &self.equations } else { &alone };
+        let targets = self.targets.rows(0, equations.rows());
+        let indices = prior.likeliest(CANDIDATES_PER_EQUATION * equations.rows(), self.degree);
+        let columns = self.tables.stacked(&indices, equations);
         let deviations: Vec<f64> = indices.iter().map(|alpha| prior.variance(alpha).sqrt()).collect();
         let mut weighted = columns.clone();
         for (mut column, &deviation) in weighted.column_iter_mut().zip(&deviations) {
             column.scale_mut(deviation);
         }
         let kernel = &weighted * weighted.transpose();
-        let (inverse, nugget) = regularized_inverse(&kernel)?;
-        let root_nugget = nugget.sqrt();
-        let (mut x, mut t) = (DVector::zeros(indices.len()), DVector::zeros(samples));
+        let regularized = Regularized::new(&kernel, equations, weight)?;
+        let roots = regularized.nuggets.map(f64::sqrt);
+        let (mut x, mut t) = (DVector::zeros(indices.len()), DVector::zeros(equations.rows()));
         for _ in 0..=REFINEMENTS {
-            let rest = &self.values - &weighted * &x - &t * root_nugget;
-            let correction = &inverse * rest;
+            let rest = targets - &weighted * &x - t.component_mul(&roots);
+            let correction = &regularized.inverse * rest;
             x += weighted.tr_mul(&correction);
-            t += correction * root_nugget;
+            t += correction.component_mul(&roots);
         }
-        let left_out = (&t / root_nugget).component_div(&inverse.diagonal());
+        let left_out = regularized.left_out(equations, &t.component_div(&roots))?;
         let coefficients = DVector::from_iterator(indices.len(), x.iter().zip(&deviations).map(|(x, s)| x * s));
-        let residuals = &self.values - &columns * &coefficients;
+        let columns = columns.rows(0, samples).into_owned();
+        let residuals = self.targets.rows(0, samples) - &columns * &coefficients;
         let is_finite = coefficients.iter().chain(left_out.iter()).all(|value| value.is_finite());
         is_finite.then_some(Solution { indices, columns, coefficients, residuals, left_out })
     }
@@ -332,19 +277,6 @@ impl Solution {
     }
 }
 
-/// (K + νI)⁻¹ with the smallest ν that allows it, and ν.
-fn regularized_inverse(kernel: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
-    let mean = kernel.trace() / kernel.nrows() as f64;
-    (0..NUGGETS).find_map(|k| {
-        let nugget = NUGGET * 10f64.powi(k) * mean;
-        let mut matrix = kernel.clone();
-        for i in 0..matrix.nrows() {
-            matrix[(i, i)] += nugget;
-        }
-        Some((inverse(&matrix)?, nugget))
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -372,52 +304,11 @@ mod tests {
         (0.6 * point[0]).exp() / (1.5 + 0.4 * point[1]) + 0.1 * point.iter().sum::<f64>()
     }
 
-    /// A = (K + νI)⁻¹: predictions without a point, by N explicit solutions.
-    #[test]
-    fn closed_form_residuals_equal_explicit_refits() {
-        let samples = samples(2, &[15]);
-        let tables = tables(&samples);
-        let values: Vec<f64> = samples.points().map(smooth).collect();
-        let problem = Problem::new(&tables, Response { values: &values, resolution: 0.0 }, 1.0, DEGREE);
-        let prior = Prior::start(2);
-        let kernel = prior.kernel(&tables, 15, DEGREE).matrix;
-        let (inverse, nugget) = regularized_inverse(&kernel).unwrap();
-        let closed = (&inverse * &problem.values).component_div(&inverse.diagonal());
-        for left in 0..15 {
-            let others: Vec<usize> = (0..15).filter(|&i| i != left).collect();
-            let mut matrix = kernel.select_rows(&others).select_columns(&others);
-            (0..14).for_each(|i| matrix[(i, i)] += nugget);
-            let weights = matrix.lu().solve(&problem.values.select_rows(&others)).unwrap();
-            let predicted = kernel.row(left).transpose().select_rows(&others).dot(&weights);
-            // The condition number of K, some 10¹⁰, times rounding.
-            assert!((problem.values[left] - predicted - closed[left]).abs() < 1e-5, "point {left}");
-        }
-    }
-
-    #[test]
-    fn gradient_is_that_of_the_leave_one_out_error() {
-        let samples = samples(3, &[25]);
-        let tables = tables(&samples);
-        let values: Vec<f64> = samples.points().map(smooth).collect();
-        let problem = Problem::new(&tables, Response { values: &values, resolution: 1e-12 }, 1.0, DEGREE);
-        let at = [0.9, 1.1, 1.6, -0.7];
-        let (_, gradient) = problem.leave_one_out_error(&Prior::with(&at)).unwrap();
-        for (k, slope) in gradient.iter().enumerate() {
-            let shifted = |step: f64| {
-                let mut moved = at;
-                moved[k] += step;
-                problem.leave_one_out_error(&Prior::with(&moved)).unwrap().0
-            };
-            let difference = (shifted(1e-4) - shifted(-1e-4)) / 2e-4;
-            assert!((slope - difference).abs() < 1e-4 * (1.0 + slope.abs()), "{k}: {slope} against {difference}");
-        }
-    }
-
     #[test]
     fn smooth_functions_are_found_from_fewer_runs_than_terms() {
         let samples = samples(2, &[30]);
         let values: Vec<f64> = samples.points().map(smooth).collect();
-        let response = Response { values: &values, resolution: 0.0 };
+        let response = Response::of(&values, 0.0);
         let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(2), &Silent).unwrap();
         assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8 && fitted.stop == Stop::Accurate);
         assert!(fitted.blind_residuals.is_none(), "a first design has chosen everything itself");
@@ -429,7 +320,7 @@ mod tests {
         for size in [200, 500, 1000] {
             let samples = samples(1, &[size]);
             let values: Vec<f64> = samples.points().map(|x| (1.3 * x[0]).sin()).collect();
-            let response = Response { values: &values, resolution: 1e-13 };
+            let response = Response::of(&values, 1e-13);
             let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(1), &Silent).unwrap();
             assert_eq!(fitted.stop, Stop::Accurate, "{size} points");
         }
@@ -440,7 +331,7 @@ mod tests {
         let small = samples(2, &[20]);
         let large = samples(2, &[20, 40]);
         let values: Vec<f64> = large.points().map(smooth).collect();
-        let response = |values| Response { values, resolution: 0.0 };
+        let response = |values| Response::of(values, 0.0);
         let (_, learnt) =
             fit(&tables(&small), response(&values[..20]), &settings(), &Learnt::nothing(2), &Silent).unwrap();
         let (fitted, _) = fit(&tables(&large), response(&values), &settings(), &learnt, &Silent).unwrap();
@@ -456,7 +347,7 @@ mod tests {
         for size in [2, 3, 5, 10, 40] {
             let samples = samples(2, &[size]);
             let values: Vec<f64> = (0..size).map(|_| stream.next_unit()).collect();
-            let response = Response { values: &values, resolution: 0.0 };
+            let response = Response::of(&values, 0.0);
             let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(2), &Silent).unwrap();
             assert_ne!(fitted.stop, Stop::Accurate, "{size} points: {:?}", fitted.errors);
         }

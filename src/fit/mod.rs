@@ -1,16 +1,22 @@
-//! Fitting methods: from values on a design to one sparse expansion.
+//! Fitting methods: from values on a design, perhaps with derivatives, to one sparse expansion.
 
 pub mod auto;
+mod kernel;
 pub mod minimum_norm;
 pub mod omp;
 mod prior;
+mod prior_search;
+mod regularized;
 pub mod stepwise;
 
 pub use prior::Prior;
 
 use crate::index_set::{IndexSet, MultiIndex};
 use crate::progress::{Interrupted, Observer};
-use crate::regression::{ActiveBasis, BasisTables, ErrorMeasures};
+use crate::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
+
+/// Weights of derivatives beside values that fits try: as good as values, less and less to be trusted, not used.
+pub(crate) const WEIGHTS: [f64; 4] = [1.0, 0.1, 0.01, 0.0];
 
 /// Why a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -45,10 +51,12 @@ pub struct Fitted {
     pub coefficients: Vec<f64>,
     /// R², S² and corrected S²; `None` for constant values, which have no variance to compare with.
     pub errors: Option<ErrorMeasures>,
-    /// Differences between values and their leave-one-out predictions, if determined.
+    /// Differences between values and their predictions without the run they come from, if determined.
     pub leave_one_out_residuals: Option<Vec<f64>>,
     /// The same at points on which the fit was not tuned; `None` if it was tuned on all.
     pub blind_residuals: Option<BlindResiduals>,
+    /// Weight of derivatives beside values, from 0, not used, to 1, trusted as much; `None` if there were none.
+    pub derivative_weight: Option<f64>,
     /// Degree p at which a stepwise search ended; the highest total degree of the terms for the other methods.
     pub degree: u16,
     /// Why it ended.
@@ -68,6 +76,7 @@ impl Fitted {
             errors: Some(basis.errors()?),
             blind_residuals: left_out.clone().map(|values| BlindResiduals { first: 0, values }),
             leave_one_out_residuals: left_out,
+            derivative_weight: None,
             degree,
             stop,
         })
@@ -76,13 +85,14 @@ impl Fitted {
     /// The mean of values that vary but could not be fitted: S² below zero says so.
     fn mean(
         tables: &BasisTables,
-        inputs: usize,
-        values: &[f64],
+        response: Response<'_>,
         variance: f64,
         observer: &dyn Observer,
     ) -> Result<Self, Interrupted> {
-        let basis = ActiveBasis::constant(tables, inputs, values, variance, observer)?;
-        Self::new(&basis, 0, Stop::DesignExhausted)
+        let values = Response::of(response.values, response.resolution);
+        let basis = ActiveBasis::constant(tables, values, variance, 0.0, observer)?;
+        let weight = response.gradients.map(|_| 0.0);
+        Ok(Self { derivative_weight: weight, ..Self::new(&basis, 0, Stop::DesignExhausted)? })
     }
 
     /// The mean of values that do not vary.
@@ -95,6 +105,7 @@ impl Fitted {
             errors: None,
             blind_residuals: Some(BlindResiduals { first: 0, values: residuals.clone() }),
             leave_one_out_residuals: Some(residuals),
+            derivative_weight: None,
             degree: 0,
             stop: Stop::Constant,
         }

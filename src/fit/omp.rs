@@ -9,13 +9,17 @@
 //! corrected for small designs, does not see that they were selected: it falls to rounding as the path nears N terms
 //! while the true error rises again.
 //!
+//! With derivatives a fold leaves out whole runs, and the error is that of values. Their weight is chosen by it, too. As each
+//! run gives several equations, few runs can determine an expansion exactly and yet be too few to leave one out; so a path
+//! that meets all equations with fewer terms than there are equations is taken at once.
+//!
 //! Candidate sets {‖α‖_q ≤ p} grow degree by degree for each norm q until degrees bring nothing more or candidates
 //! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
 
-use super::{BlindResiduals, Fitted, Stop};
+use super::{BlindResiduals, Fitted, Stop, WEIGHTS};
 use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
 use crate::progress::{Interrupted, Observer};
-use crate::regression::{ActiveBasis, BasisTables, Response};
+use crate::regression::{ActiveBasis, BasisTables, Equations, ErrorMeasures, Response, equation_weights};
 use crate::study::Smooth;
 use nalgebra::{DMatrix, DVector};
 
@@ -31,6 +35,9 @@ const PATIENCE: usize = 1;
 /// Candidates per run beyond which a set is not tried: among too many, some fit by chance.
 const CANDIDATES_PER_RUN: usize = 5;
 
+/// The same per derivative: beside values they bring little that helps to choose.
+const CANDIDATES_PER_DERIVATIVE: usize = 1;
+
 /// So many candidates are always tried: they cost nothing.
 const FEW_CANDIDATES: usize = 100;
 
@@ -44,6 +51,9 @@ const INDEPENDENT: f64 = 1e-10;
 /// Mean square error relative to the variance at which nothing but rounding is left to explain.
 const EXACT: f64 = 1e-26;
 
+/// So many more equations than terms must hold for that to be no chance.
+const EXACT_SURPLUS: usize = 1;
+
 /// The candidates of every norm, degree by degree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Candidates {
@@ -52,13 +62,19 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// The candidates for `inputs` variables that up to `largest_design` runs could use, of degree up to `max_degree`.
+    /// The candidates for `inputs` variables that up to `largest_design` runs, each with so many `derivatives`, could use, of
+    /// degree up to `max_degree`.
     ///
     /// # Errors
     ///
     /// [`IndexSetError`] if even degree 1 is too much.
-    pub fn new(inputs: usize, max_degree: u16, largest_design: usize) -> Result<Self, IndexSetError> {
-        let most = most_candidates(largest_design);
+    pub fn new(
+        inputs: usize,
+        max_degree: u16,
+        largest_design: usize,
+        derivatives: usize,
+    ) -> Result<Self, IndexSetError> {
+        let most = most_candidates(largest_design, largest_design.saturating_mul(derivatives));
         let shells = |&q_norm: &f64| {
             let hyperbolic = Hyperbolic { inputs, q_norm };
             let mut shells = hyperbolic.shells(1)?;
@@ -74,8 +90,9 @@ impl Candidates {
     }
 }
 
-fn most_candidates(runs: usize) -> usize {
-    FEW_CANDIDATES.max(CANDIDATES_PER_RUN.saturating_mul(runs))
+fn most_candidates(runs: usize, derivatives: usize) -> usize {
+    let carried = CANDIDATES_PER_RUN.saturating_mul(runs);
+    FEW_CANDIDATES.max(carried.saturating_add(CANDIDATES_PER_DERIVATIVE.saturating_mul(derivatives)))
 }
 
 /// Fits one component: `response.values[i]` belongs to point i of `tables`.
@@ -101,8 +118,8 @@ fn most_candidates(runs: usize) -> usize {
 /// let samples = design.samples(|_, u| 2.0 * u - 1.0);
 /// let values: Vec<f64> = samples.points().map(|x| 1.0 + x[0] - 2.0 * x[1] * x[2]).collect();
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(8); 3], 8);
-/// let response = Response { values: &values, resolution: 1e-13 };
-/// let fitted = fit(&tables, response, &Candidates::new(3, 8, 40)?, &Smooth { max_degree: 8, s2_target: 0.999 }, &Silent)?;
+/// let response = Response::of(&values, 1e-13);
+/// let fitted = fit(&tables, response, &Candidates::new(3, 8, 40, 0)?, &Smooth { max_degree: 8, s2_target: 0.999 }, &Silent)?;
 /// assert_eq!(fitted.indices.len(), 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -113,91 +130,210 @@ pub fn fit(
     settings: &Smooth,
     observer: &dyn Observer,
 ) -> Result<Fitted, Interrupted> {
-    let inputs = candidates.norms[0][0][0].len();
     let Some(variance) = response.variance() else {
-        return Ok(Fitted::constant(inputs, response.values));
+        return Ok(Fitted::constant(tables.inputs(), response.values));
     };
-    let mut best: Option<(CrossValidation, Vec<MultiIndex>)> = None;
-    for shells in &candidates.norms {
-        let (mut set, mut best_of_norm, mut stalled) = (shells[0].clone(), f64::INFINITY, 0);
-        for shell in &shells[1..] {
-            set.extend_from_slice(shell);
-            if set.len() > most_candidates(response.values.len()) || stalled > PATIENCE {
-                break;
-            }
-            let validation = CrossValidation::new(&tables.columns(&set), response.values, observer)?;
-            stalled = if validation.error < best_of_norm { 0 } else { stalled + 1 };
-            best_of_norm = best_of_norm.min(validation.error);
-            if best.as_ref().is_none_or(|(known, _)| validation.error < known.error) {
-                best = Some((validation, set.clone()));
-            }
-            if best_of_norm <= EXACT * variance {
-                break;
+    let search = PathSearch { tables, response, candidates, variance, observer };
+    let full_weight = if response.gradients.is_some() { WEIGHTS[0] } else { 0.0 };
+    let Some(mut best) = (match search.best(full_weight)? {
+        Best::Exact { set, terms } => {
+            let fitted = chosen(tables, response, variance, &set, &terms, full_weight, observer)?;
+            let s2 = fitted.errors.and_then(|errors| errors.s2);
+            let is_accurate = s2.is_some_and(|s2| s2 >= settings.s2_target);
+            return Ok(if is_accurate { Fitted { stop: Stop::Accurate, ..fitted } } else { fitted });
+        }
+        Best::Validated(best) => best,
+    }) else {
+        return Fitted::mean(tables, response, variance, observer);
+    };
+    if response.gradients.is_some() && search.distrusts(&best)? {
+        for &weight in &WEIGHTS[1..] {
+            if let Best::Validated(Some(other)) = search.best(weight)?
+                && other.validation.error < best.validation.error
+            {
+                best = other;
             }
         }
     }
-    let Some((validation, set)) = best.filter(|(validation, _)| validation.error.is_finite()) else {
-        return Fitted::mean(tables, inputs, response.values, variance, observer);
-    };
-    let columns = tables.columns(&set);
-    let mut path = Path::new(&columns, response.values);
+    let Choice { validation, set, weight } = best;
+    let problem = Problem::new(tables, response, &set, weight);
+    let mut path = Path::new(&problem.columns, &problem.targets);
     while path.terms.len() < validation.terms && path.step().is_some() {}
-    let terms = path.terms.iter().map(|&k| set[k].clone()).filter(|alpha| !alpha.is_constant()).collect();
-    let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?;
-    basis.extend(terms)?;
-    let degree = basis.indices().iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
-    let mut fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    let mut fitted = chosen(tables, response, variance, &set, &path.terms, weight, observer)?;
     let s2 = 1.0 - validation.error / variance;
-    fitted.errors =
-        fitted.errors.map(|errors| crate::regression::ErrorMeasures { s2: Some(s2), corrected_s2: None, ..errors });
+    fitted.errors = fitted.errors.map(|errors| ErrorMeasures { s2: Some(s2), corrected_s2: None, ..errors });
     fitted.stop = if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted };
     fitted.blind_residuals = Some(BlindResiduals { first: 0, values: validation.residuals.clone() });
     fitted.leave_one_out_residuals = Some(validation.residuals);
     Ok(fitted)
 }
 
+/// A set of candidates and a weight of derivatives, with what cross-validation says of them.
+struct Choice {
+    validation: CrossValidation,
+    set: Vec<MultiIndex>,
+    weight: f64,
+}
+
+/// What a search over sets of candidates found.
+enum Best {
+    /// Terms that meet every equation.
+    Exact { set: Vec<MultiIndex>, terms: Vec<usize> },
+    /// The set with the smallest cross-validated error, if any could be judged.
+    Validated(Option<Choice>),
+}
+
+/// The search over sets of candidates.
+struct PathSearch<'a> {
+    tables: &'a BasisTables,
+    response: Response<'a>,
+    candidates: &'a Candidates,
+    variance: f64,
+    observer: &'a dyn Observer,
+}
+
+impl PathSearch<'_> {
+    /// The best set with this weight of derivatives.
+    fn best(&self, weight: f64) -> Result<Best, Interrupted> {
+        let Self { tables, response, variance, observer, .. } = *self;
+        let exact = (EXACT * variance).max(response.resolution * response.resolution);
+        let mut best: Option<Choice> = None;
+        for shells in &self.candidates.norms {
+            let (mut set, mut best_of_norm, mut stalled) = (shells[0].clone(), f64::INFINITY, 0);
+            for shell in &shells[1..] {
+                set.extend_from_slice(shell);
+                let problem = Problem::new(tables, response, &set, weight);
+                let derivatives = problem.equations.rows() - problem.equations.samples();
+                if set.len() > most_candidates(response.values.len(), derivatives) || stalled > PATIENCE {
+                    break;
+                }
+                if let Some(terms) = problem.exact_path(exact) {
+                    return Ok(Best::Exact { set, terms });
+                }
+                let validation = CrossValidation::new(&problem, observer)?;
+                stalled = if validation.error < best_of_norm { 0 } else { stalled + 1 };
+                best_of_norm = best_of_norm.min(validation.error);
+                if best.as_ref().is_none_or(|known| validation.error < known.validation.error) {
+                    best = Some(Choice { validation, set: set.clone(), weight });
+                }
+                if best_of_norm <= exact {
+                    break;
+                }
+            }
+        }
+        Ok(Best::Validated(best.filter(|best| best.validation.error.is_finite())))
+    }
+
+    /// Whether less weight of the derivatives predicts better on the set that is best with full weight.
+    fn distrusts(&self, best: &Choice) -> Result<bool, Interrupted> {
+        for &weight in &WEIGHTS[1..] {
+            let problem = Problem::new(self.tables, self.response, &best.set, weight);
+            if CrossValidation::new(&problem, self.observer)?.error < best.validation.error {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+}
+
+/// The least-squares fit by the `terms` of a set.
+fn chosen(
+    tables: &BasisTables,
+    response: Response<'_>,
+    variance: f64,
+    set: &[MultiIndex],
+    terms: &[usize],
+    weight: f64,
+    observer: &dyn Observer,
+) -> Result<Fitted, Interrupted> {
+    let terms = terms.iter().map(|&k| set[k].clone()).filter(|alpha| !alpha.is_constant()).collect();
+    let mut basis = ActiveBasis::constant(tables, response.with_weight(weight), variance, weight, observer)?;
+    basis.extend(terms)?;
+    let degree = basis.indices().iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
+    let fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    Ok(Fitted { derivative_weight: response.gradients.map(|_| weight), ..fitted })
+}
+
+/// Weighted equations on a set of candidates.
+struct Problem {
+    equations: Equations,
+    columns: DMatrix<f64>,
+    targets: Vec<f64>,
+}
+
+impl Problem {
+    fn new(tables: &BasisTables, response: Response<'_>, set: &[MultiIndex], weight: f64) -> Self {
+        let response = response.with_weight(weight);
+        let equations = response.equations(tables.inputs());
+        let weights = equation_weights(tables, &equations, weight);
+        let mut columns = tables.stacked(set, &equations);
+        for mut column in columns.column_iter_mut() {
+            column.iter_mut().zip(&weights).for_each(|(entry, weight)| *entry *= weight);
+        }
+        let targets = response.targets().zip(&weights).map(|(target, weight)| target * weight).collect();
+        Self { equations, columns, targets }
+    }
+
+    /// The terms of a path that meets all equations, values and derivatives, to a mean square residual of `exact` with fewer
+    /// terms than there are equations.
+    fn exact_path(&self, exact: f64) -> Option<Vec<usize>> {
+        let (rows, samples) = (self.equations.rows(), self.equations.samples());
+        let mut path = Path::new(&self.columns, &self.targets);
+        while rows > samples && path.terms.len() + EXACT_SURPLUS < rows && path.step().is_some() {
+            if path.residual.norm_squared() <= exact * rows as f64 {
+                return Some(path.terms);
+            }
+        }
+        None
+    }
+}
+
 /// What cross-validation says of the paths on one set of candidates.
 struct CrossValidation {
     /// The number of terms with the smallest error.
     terms: usize,
-    /// Mean square of the residuals.
+    /// Mean square of the residuals of values.
     error: f64,
-    /// What paths of so many terms miss at the points they did not see.
+    /// What paths of so many terms miss at the values they did not see.
     residuals: Vec<f64>,
 }
 
 impl CrossValidation {
-    fn new(columns: &DMatrix<f64>, values: &[f64], observer: &dyn Observer) -> Result<Self, Interrupted> {
-        let folds = FOLDS.min(values.len());
+    fn new(problem: &Problem, observer: &dyn Observer) -> Result<Self, Interrupted> {
+        let samples = problem.equations.samples();
+        let folds = FOLDS.min(samples);
         let mut by_fold = Vec::with_capacity(folds);
         for fold in 0..folds {
             observer.check()?;
-            by_fold.push(left_out(columns, values, fold, folds));
+            by_fold.push(left_out(problem, fold, folds));
         }
         let longest = by_fold.iter().map(Vec::len).min().unwrap_or(0);
         let error = |terms: usize| -> f64 {
-            by_fold.iter().map(|path| path[terms - 1].norm_squared()).sum::<f64>() / values.len() as f64
+            by_fold.iter().map(|path| path[terms - 1].norm_squared()).sum::<f64>() / samples as f64
         };
         let (terms, error) = (1..=longest)
             .map(|terms| (terms, error(terms)))
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or((1, f64::INFINITY));
-        let mut residuals = vec![0.0; values.len()];
+        let mut residuals = vec![0.0; samples];
         for (fold, path) in by_fold.iter().enumerate().filter(|_| longest > 0) {
-            let points = (fold..values.len()).step_by(folds);
+            let points = (fold..samples).step_by(folds);
             points.zip(path[terms - 1].iter()).for_each(|(i, &residual)| residuals[i] = residual);
         }
         Ok(Self { terms, error, residuals })
     }
 }
 
-/// The residuals at the points of one fold after each term of the path on the others.
-fn left_out(columns: &DMatrix<f64>, values: &[f64], fold: usize, folds: usize) -> Vec<DVector<f64>> {
-    let (inside, outside): (Vec<usize>, Vec<usize>) = (0..values.len()).partition(|i| i % folds == fold);
+/// The residuals at the values of one fold after each term of the path on the other runs.
+fn left_out(problem: &Problem, fold: usize, folds: usize) -> Vec<DVector<f64>> {
+    let Problem { equations, columns, targets } = problem;
+    let (inside, others): (Vec<usize>, Vec<usize>) = (0..equations.samples()).partition(|i| i % folds == fold);
+    let mut outside: Vec<usize> = others.iter().flat_map(|&i| equations.block(i)).collect();
+    outside.sort_unstable();
     let (seen, unseen) = (columns.select_rows(&outside), columns.select_rows(&inside));
-    let seen_values: Vec<f64> = outside.iter().map(|&i| values[i]).collect();
-    let mut residual = DVector::from_iterator(inside.len(), inside.iter().map(|&i| values[i]));
-    let mut path = Path::new(&seen, &seen_values);
+    let seen_targets: Vec<f64> = outside.iter().map(|&i| targets[i]).collect();
+    let mut residual = DVector::from_iterator(inside.len(), inside.iter().map(|&i| targets[i]));
+    let mut path = Path::new(&seen, &seen_targets);
     let mut continued: Vec<DVector<f64>> = Vec::new();
     let mut history: Vec<DVector<f64>> = Vec::new();
     let mut best = (0, f64::INFINITY);
@@ -323,9 +459,9 @@ mod tests {
         let values: Vec<f64> = samples.points().map(value).collect();
         let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); inputs];
         let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
-        let candidates = Candidates::new(inputs, DEGREE, size).unwrap();
+        let candidates = Candidates::new(inputs, DEGREE, size, 0).unwrap();
         let settings = Smooth { max_degree: DEGREE, s2_target: 0.999 };
-        fit(&tables, Response { values: &values, resolution: 1e-13 }, &candidates, &settings, &Silent).unwrap()
+        fit(&tables, Response::of(&values, 1e-13), &candidates, &settings, &Silent).unwrap()
     }
 
     #[test]

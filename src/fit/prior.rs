@@ -6,11 +6,12 @@
 //! s_α = Π_{j: α_j > 0} v w_j^{α_j},   0 < w_j < 1,
 //!
 //! with one decay w_j per input and one weight v that says how far inputs interact. A product over inputs makes
-//! K = Σ_α s_α ψ_α ψ_αᵀ, summed over *all* α up to a degree per input, a product of r small sums.
+//! K = Σ_α s_α ψ_α ψ_αᵀ, summed over *all* α up to a degree per input, a product of r small sums. With derivatives, ψ_α
+//! stands for its value at a point in some rows and for a derivative in others; then one of the sums has φ′ in place of φ.
 
+use super::kernel::Kernel;
 use crate::index_set::MultiIndex;
-use crate::regression::BasisTables;
-use nalgebra::DMatrix;
+use crate::regression::{BasisTables, Equations};
 
 /// Range of ln(−ln w): from w = 0.95, hardly any decay, to w = 1e-24, an input without influence.
 const DECAY: (f64, f64) = (-3.0, 4.0);
@@ -28,16 +29,6 @@ const NEGLIGIBLE: f64 = 1e-14;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
     parameters: Vec<f64>,
-}
-
-/// The matrix K of a prior on a design, with what its derivatives need.
-pub(super) struct Kernel {
-    /// K.
-    pub matrix: DMatrix<f64>,
-    /// Per input, k_j with K = Π k_j entry by entry.
-    factors: Vec<DMatrix<f64>>,
-    /// Per input, dk_j by ln(−ln w_j).
-    by_decay: Vec<DMatrix<f64>>,
 }
 
 impl Prior {
@@ -103,31 +94,20 @@ impl Prior {
         alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum()
     }
 
-    /// K and its parts on the first `samples` points of a design, with degrees up to `degree` in each input.
-    pub(super) fn kernel(&self, tables: &BasisTables, samples: usize, degree: u16) -> Kernel {
-        let mut kernel = Kernel {
-            matrix: DMatrix::from_element(samples, samples, 1.0),
-            factors: Vec::with_capacity(self.inputs()),
-            by_decay: Vec::with_capacity(self.inputs()),
-        };
-        for input in 0..self.inputs() {
-            let rate = self.parameters[input].exp();
-            let used = (1..degree).find(|&n| (-rate * f64::from(n)).exp() < NEGLIGIBLE).unwrap_or(degree);
-            let powers = tables.powers(input, used).rows(0, samples).into_owned();
-            let (mut scaled, mut slopes) = (powers.clone(), powers.clone());
-            for n in 0..usize::from(used) {
-                let variance = self.weight() * (-rate * (n + 1) as f64).exp();
-                scaled.column_mut(n).scale_mut(variance);
-                slopes.column_mut(n).scale_mut(-variance * rate * (n + 1) as f64);
-            }
-            let transposed = powers.transpose();
-            let mut factor = scaled * &transposed;
-            factor.add_scalar_mut(1.0);
-            kernel.matrix.component_mul_assign(&factor);
-            kernel.factors.push(factor);
-            kernel.by_decay.push(slopes * transposed);
-        }
-        kernel
+    /// K and its parts for some equations, with degrees up to `degree` in each input.
+    pub(super) fn kernel(&self, tables: &BasisTables, equations: &Equations, degree: u16) -> Kernel {
+        Kernel::new(self, tables, equations, degree)
+    }
+
+    /// The prior variances of degrees 1… of an input, up to where they are negligible or to `degree`, and their derivatives by
+    /// ln(−ln w_j).
+    pub(super) fn variances(&self, input: usize, degree: u16) -> (Vec<f64>, Vec<f64>) {
+        let rate = self.parameters[input].exp();
+        let used = (1..degree).find(|&n| (-rate * f64::from(n)).exp() < NEGLIGIBLE).unwrap_or(degree);
+        let exponents: Vec<f64> = (1..=used).map(|n| rate * f64::from(n)).collect();
+        let variances: Vec<f64> = exponents.iter().map(|exponent| self.weight() * (-exponent).exp()).collect();
+        let slopes = variances.iter().zip(&exponents).map(|(variance, exponent)| -variance * exponent).collect();
+        (variances, slopes)
     }
 
     /// The `count` multi-indices with the largest prior variance, the canonically first among equals, with degrees up to
@@ -217,46 +197,4 @@ impl<'a> Walk<'a> {
         }
         alpha[input] = 0;
     }
-}
-
-impl Kernel {
-    /// For a function f of K with df = Σ G_ab dK_ab, its derivatives by the parameters of the prior.
-    pub fn gradient(&self, by_matrix: &DMatrix<f64>) -> Vec<f64> {
-        let (mut gradient, mut by_weight) = (Vec::with_capacity(self.factors.len() + 1), 0.0);
-        let weighted = by_matrix.component_mul(&self.matrix);
-        for (factor, slope) in self.factors.iter().zip(&self.by_decay) {
-            let [decay, weight] = sums(weighted.as_slice(), factor.as_slice(), slope.as_slice());
-            gradient.push(decay);
-            by_weight += weight;
-        }
-        gradient.push(by_weight);
-        gradient
-    }
-}
-
-/// Entries summed side by side.
-const LANES: usize = 8;
-
-/// Σ h b/k and Σ h (k − 1)/k over the entries h, k, b of three matrices, in eight interleaved parts.
-fn sums(weighted: &[f64], factor: &[f64], slope: &[f64]) -> [f64; 2] {
-    let (mut decay, mut weight) = ([0.0; LANES], [0.0; LANES]);
-    let mut add = |h: &[f64; LANES], k: &[f64; LANES], b: &[f64; LANES]| {
-        for lane in 0..LANES {
-            // No entry of a kernel is exactly zero but by chance, and then h is, too.
-            let others = h[lane] / if k[lane] == 0.0 { 1.0 } else { k[lane] };
-            decay[lane] += others * b[lane];
-            weight[lane] += others * (k[lane] - 1.0);
-        }
-    };
-    let ((h, h_rest), (k, k_rest), (b, b_rest)) = (weighted.as_chunks(), factor.as_chunks(), slope.as_chunks());
-    for ((h, k), b) in h.iter().zip(k).zip(b) {
-        add(h, k, b);
-    }
-    let padded = |rest: &[f64], filling: f64| {
-        let mut lanes = [filling; LANES];
-        lanes[..rest.len()].copy_from_slice(rest);
-        lanes
-    };
-    add(&padded(h_rest, 0.0), &padded(k_rest, 1.0), &padded(b_rest, 0.0));
-    [decay.iter().sum(), weight.iter().sum()]
 }

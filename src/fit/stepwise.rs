@@ -11,17 +11,23 @@
 //!
 //! One case the paper leaves open: if the forward step accepts as many terms as there are points, least squares has no
 //! unique solution and no backward step can be taken; this counts as a failed size test.
+//!
+//! With derivatives each run gives several equations, and counting says little: values and derivatives at few points can
+//! be dependent (Alexander and Hirschowitz 1995). N < 2 card(A) says that the mean leverage of a value is above ½; this is what
+//! is tested then, with runs left out as a whole ([`ActiveBasis::mean_leverage`]), and terms that depend on others fail the test,
+//! too. R² of the two steps is that of all equations, S² that of the values. The search is made for several weights of the
+//! derivatives; the one with the best S² counts.
 
 use std::collections::HashSet;
 
-use super::{Fitted, Stop};
+use super::{Fitted, Stop, WEIGHTS};
 use crate::index_set::MultiIndex;
 use crate::progress::{Interrupted, Observer};
 use crate::regression::{ActiveBasis, BasisTables, Response};
 use crate::study::Stepwise;
 
-/// Points required per term (step 4 of the paper).
-const SAMPLES_PER_TERM: usize = 2;
+/// Mean leverage of a value beyond which there are too few points: P/N for N < 2 card(A) (step 4 of the paper).
+const LARGEST_LEVERAGE: f64 = 0.5;
 
 /// What came of a fit on one design.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +73,7 @@ pub enum Outcome {
 /// let values: Vec<f64> = samples.points().map(|x| 1.0 + x[0] * x[1]).collect();
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(8); 2], 8);
 /// let shells = Hyperbolic { inputs: 2, q_norm: 1.0 }.shells(8)?;
-/// let response = Response { values: &values, resolution: 1e-13 };
+/// let response = Response::of(&values, 1e-13);
 /// let outcome = fit(&tables, response, &shells, &settings, &Silent)?;
 /// assert!(matches!(outcome, Outcome::Fitted(fitted) if fitted.errors.unwrap().r2 > 0.9999));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -79,12 +85,44 @@ pub fn fit(
     settings: &Stepwise,
     observer: &dyn Observer,
 ) -> Result<Outcome, Interrupted> {
-    let inputs = shells[0][0].len();
     let Some(variance) = response.variance() else {
-        return Ok(Outcome::Fitted(Fitted::constant(inputs, response.values)));
+        return Ok(Outcome::Fitted(Fitted::constant(tables.inputs(), response.values)));
     };
-    let samples = response.values.len();
-    let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?; // step 2: A = {0}
+    if response.gradients.is_none() {
+        return search(tables, response, variance, 0.0, shells, settings, observer);
+    }
+    let mut best: Option<(f64, Outcome)> = None;
+    for weight in WEIGHTS {
+        let outcome = search(tables, response.with_weight(weight), variance, weight, shells, settings, observer)?;
+        let s2 = match &outcome {
+            Outcome::Fitted(fitted) => fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY),
+            Outcome::TooFewSamples { .. } => f64::NEG_INFINITY,
+        };
+        if best.as_ref().is_none_or(|(known, _)| s2 > *known) {
+            best = Some((s2, weighed(outcome, weight)));
+        }
+    }
+    Ok(best.map(|(_, outcome)| outcome).expect("there are weights"))
+}
+
+fn weighed(outcome: Outcome, weight: f64) -> Outcome {
+    match outcome {
+        Outcome::Fitted(fitted) => Outcome::Fitted(Fitted { derivative_weight: Some(weight), ..fitted }),
+        too_few => too_few,
+    }
+}
+
+/// The search with one weight of the derivatives.
+fn search(
+    tables: &BasisTables,
+    response: Response<'_>,
+    variance: f64,
+    weight: f64,
+    shells: &[Vec<MultiIndex>],
+    settings: &Stepwise,
+    observer: &dyn Observer,
+) -> Result<Outcome, Interrupted> {
+    let mut basis = ActiveBasis::constant(tables, response, variance, weight, observer)?; // step 2: A = {0}
     for degree in 1..=settings.max_degree {
         let before = basis.indices().to_vec();
         let candidates = &shells[usize::from(degree)];
@@ -92,7 +130,7 @@ pub fn fit(
         if is_determined {
             backward_step(&mut basis, candidates, settings.epsilon_backward)?;
         }
-        if !is_determined || samples < SAMPLES_PER_TERM * basis.indices().len() {
+        if !is_determined || basis.mean_leverage() > LARGEST_LEVERAGE {
             return Ok(Outcome::TooFewSamples { indices: before, degree: degree - 1 }); // step 4
         }
         if basis.s2().is_some_and(|s2| s2 >= settings.s2_target) {
@@ -114,26 +152,27 @@ pub fn settle(
     degree: u16,
     observer: &dyn Observer,
 ) -> Result<Fitted, Interrupted> {
-    let inputs = indices[0].len();
     let Some(variance) = response.variance() else {
-        return Ok(Fitted::constant(inputs, response.values));
+        return Ok(Fitted::constant(tables.inputs(), response.values));
     };
-    let mut basis = ActiveBasis::constant(tables, inputs, response.values, variance, observer)?;
+    let mut basis = ActiveBasis::constant(tables, response, variance, 1.0, observer)?;
     basis.extend(indices[1..].to_vec())?;
-    Fitted::new(&basis, degree, Stop::DesignExhausted)
+    let fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    Ok(Fitted { derivative_weight: response.gradients.map(|_| 1.0), ..fitted })
 }
 
-/// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as points, adds
-/// nothing and returns false.
+/// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as equations, adds
+/// nothing and returns false; so it does if terms depend on each other beside derivatives.
 fn forward_step(basis: &mut ActiveBasis<'_>, candidates: &[MultiIndex], epsilon: f64) -> Result<bool, Interrupted> {
     let gains = basis.gains(candidates)?;
     let significant = candidates.iter().zip(gains).filter(|&(_, gain)| gain > 0.0 && gain >= epsilon);
     let significant: Vec<MultiIndex> = significant.map(|(alpha, _)| alpha.clone()).collect();
-    if basis.indices().len() + significant.len() >= basis.samples() {
+    let expected = basis.indices().len() + significant.len();
+    if expected >= basis.rows() {
         return Ok(false);
     }
     basis.extend(significant)?;
-    Ok(true)
+    Ok(basis.indices().len() == expected || basis.rows() == basis.samples())
 }
 
 /// Drops the terms of lower degree, never {0}, that each alone lower R² by less than `epsilon`.
@@ -179,7 +218,7 @@ mod tests {
         }
 
         fn fit(&self, values: &[f64], settings: &Stepwise) -> Outcome {
-            fit(&self.tables, Response { values, resolution: 1e-13 }, &self.shells, settings, &Silent).unwrap()
+            fit(&self.tables, Response::of(values, 1e-13), &self.shells, settings, &Silent).unwrap()
         }
     }
 
@@ -213,13 +252,10 @@ mod tests {
         let values = problem.values(&[([0, 0], 1.0), ([3, 0], 1.0), ([2, 1], 1.0)]);
         let one_degree = Stepwise { max_degree: 3, epsilon_forward: 1e-3, epsilon_backward: 0.0, ..settings(1.0, 1.0) };
         let found = fitted(problem.fit(&values, &one_degree));
-        let mut basis = ActiveBasis::constant(
-            &problem.tables,
-            2,
-            &values,
-            Response { values: &values, resolution: 0.0 }.variance().unwrap(),
-            &Silent,
-        )
+        let mut basis = {
+            let response = Response::of(&values, 0.0);
+            ActiveBasis::constant(&problem.tables, response, response.variance().unwrap(), 1.0, &Silent)
+        }
         .unwrap();
         for shell in &problem.shells[1..=3] {
             let gains = basis.gains(shell).unwrap();
@@ -236,8 +272,9 @@ mod tests {
     fn backward_step_drops_lower_degrees_only_and_never_the_constant() {
         let problem = problem(40, 1.0);
         let values = problem.values(&[([2, 0], 1.0)]);
-        let variance = Response { values: &values, resolution: 0.0 }.variance().unwrap();
-        let mut basis = ActiveBasis::constant(&problem.tables, 2, &values, variance, &Silent).unwrap();
+        let variance = Response::of(&values, 0.0).variance().unwrap();
+        let mut basis =
+            ActiveBasis::constant(&problem.tables, Response::of(&values, 0.0), variance, 1.0, &Silent).unwrap();
         basis.extend([problem.shells[1].clone(), problem.shells[2].clone()].concat()).unwrap();
         backward_step(&mut basis, &problem.shells[2], 1e-6).unwrap();
         let expected = [problem.shells[0].clone(), problem.shells[2].clone()].concat();
@@ -269,7 +306,7 @@ mod tests {
             panic!("12 points do not carry this function");
         };
         assert!(12 >= 2 * indices.len() && indices[0].is_constant());
-        let response = Response { values: &values, resolution: 1e-13 };
+        let response = Response::of(&values, 1e-13);
         let settled = settle(&problem.tables, response, &indices, degree, &Silent).unwrap();
         assert_eq!((settled.degree, settled.stop), (degree, Stop::DesignExhausted));
         assert_eq!(settled.indices.len(), indices.len());
@@ -279,8 +316,9 @@ mod tests {
     fn as_many_significant_terms_as_points_are_not_even_added() {
         let problem = problem(6, 1.0);
         let values: Vec<f64> = problem.samples.points().map(|x| (3.0 * x[0] + x[1]).sin()).collect();
-        let variance = Response { values: &values, resolution: 0.0 }.variance().unwrap();
-        let mut basis = ActiveBasis::constant(&problem.tables, 2, &values, variance, &Silent).unwrap();
+        let variance = Response::of(&values, 0.0).variance().unwrap();
+        let mut basis =
+            ActiveBasis::constant(&problem.tables, Response::of(&values, 0.0), variance, 1.0, &Silent).unwrap();
         let five = [problem.shells[1].clone(), problem.shells[2].clone()].concat();
         assert_eq!(forward_step(&mut basis, &five, 0.0), Ok(false), "with {{0}}, six terms on six points");
         assert_eq!(basis.indices(), [MultiIndex::constant(2)]);
@@ -310,7 +348,7 @@ mod tests {
         }
         let problem = problem(10, 1.0);
         let values: Vec<f64> = problem.samples.points().map(|x| x[0]).collect();
-        let response = Response { values: &values, resolution: 0.0 };
+        let response = Response::of(&values, 0.0);
         let outcome = fit(&problem.tables, response, &problem.shells, &settings(1.0, 0.999), &Stopped);
         assert_eq!(outcome, Err(Interrupted));
     }

@@ -127,6 +127,15 @@ impl Marginal {
         }
     }
 
+    /// dx/dξ, the derivative of the physical value x by the standardized one: what the chain rule needs.
+    #[inline]
+    pub fn slope(&self, standardized: f64) -> f64 {
+        let _ = standardized;
+        match self {
+            Self::Uniform(uniform) => uniform.half_width(),
+        }
+    }
+
     /// The standardized value ξ at a physical value.
     #[inline]
     pub fn standardized(&self, physical: f64) -> f64 {
@@ -157,6 +166,8 @@ mod tests {
             let resolution = 4.0 * f64::EPSILON * (1.0 + (lower.abs() + width) / width);
             prop_assert!((back - xi).abs() <= resolution);
             prop_assert!(marginal.contains(marginal.physical(xi)));
+            let chord = marginal.physical(0.5) - marginal.physical(-0.5);
+            prop_assert!((marginal.slope(xi) - chord).abs() <= 4.0 * f64::EPSILON * (lower.abs() + 2.0 * width));
         }
     }
 

@@ -30,6 +30,22 @@ pub struct Limits {
 /// Value and gradient at a point, or `None` where the function is not defined.
 pub type Evaluation = Option<(f64, Vec<f64>)>;
 
+/// Where a search begins, and where it ended: a start for a search of a similar function.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Start {
+    /// The point.
+    pub point: Vec<f64>,
+    /// The inverse Hessian in the variables z, as far as it is known.
+    pub inverse_hessian: Option<DMatrix<f64>>,
+}
+
+impl Start {
+    /// A point where nothing is known.
+    pub fn at(point: &[f64]) -> Self {
+        Self { point: point.to_vec(), inverse_hessian: None }
+    }
+}
+
 /// The lowest point found from `start` in the box of `bounds` (lower, upper).
 ///
 /// `evaluate` gives value and gradient at a point, or `None` where the function is not defined; such points are treated as
@@ -42,31 +58,34 @@ pub type Evaluation = Option<(f64, Vec<f64>)>;
 /// # Examples
 ///
 /// ```
-/// use pcc::numerics::minimize::{Limits, minimize};
+/// use pcc::numerics::minimize::{Limits, Start, minimize};
 /// let valley = |x: &[f64]| {
 ///     let (a, b) = (1.0 - x[0], x[1] - x[0] * x[0]);
 ///     Ok::<_, ()>(Some((a * a + 10.0 * b * b, vec![-2.0 * a - 40.0 * b * x[0], 20.0 * b])))
 /// };
 /// let limits = Limits { iterations: 100, decrease: 1e-14 };
-/// let lowest = minimize(&[-1.0, 2.0], &[(-3.0, 3.0); 2], limits, valley)?;
+/// let lowest = minimize(&Start::at(&[-1.0, 2.0]), &[(-3.0, 3.0); 2], limits, valley)?.point;
 /// assert!((lowest[0] - 1.0).abs() < 1e-5 && (lowest[1] - 1.0).abs() < 1e-5);
 /// # Ok::<(), ()>(())
 /// ```
 pub fn minimize<E>(
-    start: &[f64],
+    start: &Start,
     bounds: &[(f64, f64)],
     limits: Limits,
     mut evaluate: impl FnMut(&[f64]) -> Result<Evaluation, E>,
-) -> Result<Vec<f64>, E> {
+) -> Result<Start, E> {
     let bounded = Box { bounds };
     let mut at = |z: &DVector<f64>| -> Result<Option<(f64, DVector<f64>)>, E> {
         let found = evaluate(&bounded.point(z))?;
         Ok(found.map(|(value, gradient)| (value, bounded.gradient(z, &gradient))))
     };
-    let mut z = bounded.free(start);
-    let Some((mut value, mut gradient)) = at(&z)? else { return Ok(start.to_vec()) };
-    let identity = DMatrix::identity(start.len(), start.len());
-    let mut inverse_hessian = &identity * (LONGEST_STEP / gradient.amax().max(LONGEST_STEP));
+    let mut z = bounded.free(&start.point);
+    let Some((mut value, mut gradient)) = at(&z)? else { return Ok(start.clone()) };
+    let identity = DMatrix::identity(start.point.len(), start.point.len());
+    let mut inverse_hessian = match &start.inverse_hessian {
+        Some(known) => known.clone(),
+        None => &identity * (LONGEST_STEP / gradient.amax().max(LONGEST_STEP)),
+    };
     for _ in 0..limits.iterations {
         let mut step = -(&inverse_hessian * &gradient);
         let slope = step.dot(&gradient);
@@ -93,7 +112,7 @@ pub fn minimize<E>(
             break;
         }
     }
-    Ok(bounded.point(&z))
+    Ok(Start { point: bounded.point(&z), inverse_hessian: Some(inverse_hessian) })
 }
 
 /// H ← (1 − ρsyᵀ)H(1 − ρysᵀ) + ρssᵀ with ρ = 1/yᵀs, where curvature was found.
@@ -141,7 +160,7 @@ mod tests {
     fn a_minimum_outside_ends_at_the_bound() {
         let slide = |x: &[f64]| Ok::<_, Infallible>(Some(((x[0] - 5.0).powi(2), vec![2.0 * (x[0] - 5.0)])));
         let limits = Limits { iterations: 200, decrease: 1e-12 };
-        let lowest = minimize(&[0.0], &[(-1.0, 1.0)], limits, slide).unwrap();
+        let lowest = minimize(&Start::at(&[0.0]), &[(-1.0, 1.0)], limits, slide).unwrap().point;
         assert!(lowest[0] <= 1.0 && lowest[0] > 0.999);
     }
 
@@ -154,9 +173,9 @@ mod tests {
             Ok::<_, Infallible>(inside)
         };
         let limits = Limits { iterations: 100, decrease: 1e-14 };
-        let lowest = minimize(&[0.1], &[(-4.0, 4.0)], limits, wall).unwrap();
+        let lowest = minimize(&Start::at(&[0.1]), &[(-4.0, 4.0)], limits, wall).unwrap().point;
         assert!((lowest[0] - 2.0 / 3.0).abs() < 1e-5);
-        assert_eq!(minimize(&[2.0], &[(-4.0, 4.0)], limits, wall).unwrap(), [2.0]);
+        assert_eq!(minimize(&Start::at(&[2.0]), &[(-4.0, 4.0)], limits, wall).unwrap(), Start::at(&[2.0]));
     }
 
     #[test]
@@ -167,6 +186,6 @@ mod tests {
             calls += 1;
             if calls < 3 { Ok(Some((-f64::from(calls), vec![1.0]))) } else { Err("stop") }
         };
-        assert_eq!(minimize(&[0.0], &[(-1.0, 1.0)], limits, failing), Err("stop"));
+        assert_eq!(minimize(&Start::at(&[0.0]), &[(-1.0, 1.0)], limits, failing), Err("stop"));
     }
 }

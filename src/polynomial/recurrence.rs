@@ -71,6 +71,32 @@ impl Recurrence {
             *value = current;
         }
     }
+
+    /// Writes φ_0(x), φ_1(x), … into `values` and φ′_0(x), φ′_1(x), … into `slopes`, at most `degree() + 1` of each:
+    /// √b_{k+1} φ′_{k+1} = φ_k + (x − a_k) φ′_k − √b_k φ′_{k−1}.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc::polynomial::Family;
+    /// let (mut values, mut slopes) = ([0.0; 3], [0.0; 3]);
+    /// Family::Legendre.recurrence(2).evaluate_with_slopes(0.5, &mut values, &mut slopes);
+    /// // φ_1′ = √3, φ_2′ = 3√5 x
+    /// assert!((slopes[1] - 3f64.sqrt()).abs() < 1e-15 && (slopes[2] - 1.5 * 5f64.sqrt()).abs() < 1e-14);
+    /// ```
+    pub fn evaluate_with_slopes(&self, x: f64, values: &mut [f64], slopes: &mut [f64]) {
+        self.evaluate(x, values);
+        let (mut before, mut current, mut coupling) = (0.0, 0.0, 0.0);
+        for (k, slope) in slopes.iter_mut().enumerate() {
+            if k > 0 {
+                let next = (values[k - 1] + (x - self.diagonal[k - 1]) * current - coupling * before)
+                    / self.off_diagonal[k - 1];
+                coupling = self.off_diagonal[k - 1];
+                (before, current) = (current, next);
+            }
+            *slope = current;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -106,6 +132,19 @@ mod tests {
         Family::Legendre.recurrence(30).evaluate(1.0, &mut values);
         for (k, value) in values.iter().enumerate() {
             assert!((value - ((2 * k + 1) as f64).sqrt()).abs() < TOLERANCE * value);
+        }
+    }
+
+    /// φ_k′(1) of Legendre polynomials is k(k + 1)/2 √(2k + 1), and symmetric or antisymmetric at −1.
+    #[test]
+    fn legendre_slopes_at_the_ends() {
+        let (mut values, mut slopes) = ([0.0; 31], [0.0; 31]);
+        for end in [1.0, -1.0_f64] {
+            Family::Legendre.recurrence(30).evaluate_with_slopes(end, &mut values, &mut slopes);
+            for (k, slope) in slopes.iter().enumerate() {
+                let expected = 0.5 * (k * (k + 1)) as f64 * ((2 * k + 1) as f64).sqrt() * end.powi(k as i32 + 1);
+                assert!((slope - expected).abs() <= TOLERANCE * (1.0 + expected.abs()), "degree {k}: {slope}");
+            }
         }
     }
 }

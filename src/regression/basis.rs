@@ -1,72 +1,18 @@
-//! Multivariate orthonormal polynomials on a design, and the set of those accepted so far.
+//! The set of terms accepted so far, with the least-squares fit of one component on it.
+//!
+//! The equations are values and perhaps derivatives, each derivative multiplied by a weight and by the unit that makes the
+//! derivative of a linear term as large as the term. Residuals, leverages and rank come from one QR factorisation of them all.
 
-use super::errors::{ErrorMeasures, leave_one_out_residuals};
-use crate::design::Samples;
+use super::equations::{Equations, LeftOut, leave_runs_out};
+use super::errors::{ErrorMeasures, Response, leave_one_out_residuals};
+use super::tables::BasisTables;
 use crate::index_set::MultiIndex;
 use crate::numerics::qr::ColumnQr;
-use crate::polynomial::Recurrence;
 use crate::progress::{Interrupted, Observer};
-use nalgebra::{DMatrix, DMatrixView, DVector};
+use nalgebra::{DMatrix, DVector};
 
 /// Candidates evaluated together: wide enough for fast matrix products, small enough for the cache.
 const CANDIDATE_BLOCK: usize = 64;
-
-/// Univariate polynomials at every point of a design: what multivariate ones are products of.
-#[derive(Debug, Clone)]
-pub struct BasisTables {
-    samples: usize,
-    /// For input j and degree k, `samples` values from (j × (degree + 1) + k) × `samples` on.
-    values: Vec<f64>,
-    degrees: usize,
-}
-
-impl BasisTables {
-    /// φ_k(ξ_ij) for all points i, inputs j and degrees k up to `degree`, with one recurrence per input.
-    pub fn new(samples: &Samples, recurrences: &[Recurrence], degree: usize) -> Self {
-        let (count, degrees) = (samples.len(), degree + 1);
-        let mut values = vec![0.0; recurrences.len() * degrees * count];
-        let mut at_point = vec![0.0; degrees];
-        for (i, point) in samples.points().enumerate() {
-            for (j, (recurrence, &xi)) in recurrences.iter().zip(point).enumerate() {
-                recurrence.evaluate(xi, &mut at_point);
-                for (k, &value) in at_point.iter().enumerate() {
-                    values[(j * degrees + k) * count + i] = value;
-                }
-            }
-        }
-        Self { samples: count, values, degrees }
-    }
-
-    /// Number of points N.
-    pub fn samples(&self) -> usize {
-        self.samples
-    }
-
-    fn univariate(&self, input: usize, degree: u16) -> &[f64] {
-        let start = (input * self.degrees + usize::from(degree)) * self.samples;
-        &self.values[start..start + self.samples]
-    }
-
-    /// The matrix with the column φ_k(ξ_ij) for each degree k = 1…`degree` of input j, one row per point i.
-    pub fn powers(&self, input: usize, degree: u16) -> DMatrixView<'_, f64> {
-        let start = (input * self.degrees + 1) * self.samples;
-        let end = start + usize::from(degree) * self.samples;
-        DMatrixView::from_slice(&self.values[start..end], self.samples, degree.into())
-    }
-
-    /// The matrix Ψ with the column ψ_α(ξ_i) = Π_j φ_{α_j}(ξ_ij) for each α.
-    pub fn columns(&self, indices: &[MultiIndex]) -> DMatrix<f64> {
-        let mut matrix = DMatrix::from_element(self.samples, indices.len(), 1.0);
-        for (alpha, column) in indices.iter().zip(matrix.as_mut_slice().chunks_exact_mut(self.samples)) {
-            for (j, &degree) in alpha.iter().enumerate().filter(|&(_, &degree)| degree > 0) {
-                for (entry, factor) in column.iter_mut().zip(self.univariate(j, degree)) {
-                    *entry *= factor;
-                }
-            }
-        }
-        matrix
-    }
-}
 
 /// Terms that are orthogonalised between two looks at whether the user asked to stop.
 const EXTENSION_BLOCK: usize = 128;
@@ -75,7 +21,11 @@ const EXTENSION_BLOCK: usize = 128;
 #[derive(Clone)]
 pub struct ActiveBasis<'a> {
     tables: &'a BasisTables,
-    values: &'a [f64],
+    equations: Equations,
+    /// What multiplies each equation.
+    weights: Vec<f64>,
+    /// Values and derivatives, weighted.
+    targets: Vec<f64>,
     /// V̂ of the values.
     variance: f64,
     indices: Vec<MultiIndex>,
@@ -85,34 +35,56 @@ pub struct ActiveBasis<'a> {
 }
 
 impl<'a> ActiveBasis<'a> {
-    /// A = {0}: the fit by a constant. `values[i]` belongs to point i of `tables`; `variance` is their V̂, not zero.
+    /// A = {0}: the fit by a constant. `response.values[i]` belongs to point i of `tables`; `variance` is their V̂, not zero.
+    /// Derivatives are equations with `weight` beside the values.
     ///
     /// # Errors
     ///
     /// [`Interrupted`], like every method that takes long.
     pub fn constant(
         tables: &'a BasisTables,
-        inputs: usize,
-        values: &'a [f64],
+        response: Response<'_>,
         variance: f64,
+        weight: f64,
         observer: &'a dyn Observer,
     ) -> Result<Self, Interrupted> {
+        let equations = response.equations(tables.inputs());
+        let weights = equation_weights(tables, &equations, weight);
+        let targets: Vec<f64> = response.targets().zip(&weights).map(|(target, weight)| target * weight).collect();
         let mut basis = Self {
+            qr: ColumnQr::new(targets.len()),
             tables,
-            values,
+            equations,
+            weights,
+            targets,
             variance,
             indices: Vec::new(),
-            qr: ColumnQr::new(values.len()),
             residual: DVector::zeros(0),
             observer,
         };
-        basis.extend(vec![MultiIndex::constant(inputs)])?;
+        basis.extend(vec![MultiIndex::constant(tables.inputs())])?;
         Ok(basis)
     }
 
     /// Number of points N.
     pub fn samples(&self) -> usize {
-        self.values.len()
+        self.equations.samples()
+    }
+
+    /// Number of equations, values and derivatives.
+    pub fn rows(&self) -> usize {
+        self.equations.rows()
+    }
+
+    /// Ψ with weighted rows.
+    fn columns(&self, indices: &[MultiIndex]) -> DMatrix<f64> {
+        let mut columns = self.tables.stacked(indices, &self.equations);
+        if self.rows() > self.samples() {
+            for mut column in columns.column_iter_mut() {
+                column.iter_mut().zip(&self.weights).for_each(|(entry, weight)| *entry *= weight);
+            }
+        }
+        columns
     }
 
     /// The accepted multi-indices, in the order of their acceptance; {0} comes first.
@@ -121,7 +93,8 @@ impl<'a> ActiveBasis<'a> {
     }
 
     /// For each candidate α, by how much R² would rise if it alone joined A:
-    /// (ψᵀe)²/‖ψ_⊥‖² relative to N V̂, with the residual e and the part ψ_⊥ of ψ orthogonal to A.
+    /// (ψᵀe)²/‖ψ_⊥‖² relative to N V̂, with the residual e and the part ψ_⊥ of ψ orthogonal to A. With derivatives, all
+    /// equations count, relative to the sum of their squares about the mean value.
     ///
     /// # Errors
     ///
@@ -131,7 +104,7 @@ impl<'a> ActiveBasis<'a> {
         let mut gains = Vec::with_capacity(candidates.len());
         for block in candidates.chunks(CANDIDATE_BLOCK) {
             self.observer.check()?;
-            let columns = self.tables.columns(block);
+            let columns = self.columns(block);
             let products = columns.tr_mul(&self.residual);
             let lengths = self.qr.orthogonal_lengths_squared(&columns);
             gains.extend(
@@ -165,11 +138,11 @@ impl<'a> ActiveBasis<'a> {
     pub fn extend(&mut self, candidates: Vec<MultiIndex>) -> Result<(), Interrupted> {
         for block in candidates.chunks(EXTENSION_BLOCK) {
             self.observer.check()?;
-            let accepted = self.qr.append(&self.tables.columns(block));
+            let accepted = self.qr.append(&self.columns(block));
             let independent = block.iter().zip(accepted).filter(|(_, accepted)| *accepted);
             self.indices.extend(independent.map(|(alpha, _)| alpha.clone()));
         }
-        self.residual = self.qr.residual(self.values);
+        self.residual = self.qr.residual(&self.targets);
         Ok(())
     }
 
@@ -188,15 +161,21 @@ impl<'a> ActiveBasis<'a> {
 
     /// Least-squares coefficients β, one per index in `indices()`.
     pub fn coefficients(&self) -> Vec<f64> {
-        self.qr.coefficients(self.values)
+        self.qr.coefficients(&self.targets)
     }
 
-    /// R², S² and corrected S².
+    /// R², S² and corrected S², all of the values. With derivatives, S² leaves out whole runs, and there is no correction for
+    /// small designs.
     ///
     /// # Errors
     ///
     /// [`Interrupted`].
     pub fn errors(&self) -> Result<ErrorMeasures, Interrupted> {
+        if self.has_derivatives() {
+            let of_values = &self.residual.as_slice()[..self.samples()];
+            let left_out = self.leave_one_out_residuals();
+            return Ok(ErrorMeasures::of_residuals(of_values, left_out.as_deref(), self.variance));
+        }
         let trace = self.qr.inverse_gram_diagonal(|| self.observer.check())?.iter().sum();
         let leverages = self.qr.leverages();
         Ok(ErrorMeasures::new(self.residual.as_slice(), &leverages, trace, self.indices.len(), self.variance))
@@ -206,26 +185,55 @@ impl<'a> ActiveBasis<'a> {
     pub fn s2(&self) -> Option<f64> {
         let left_out = self.leave_one_out_residuals()?;
         let sum: f64 = left_out.iter().map(|residual| residual * residual).sum();
-        Some(1.0 - sum / self.total_variation())
+        Some(1.0 - sum / (self.samples() as f64 * self.variance))
     }
 
-    /// What each point's value differs by from its prediction by all others, or `None` where that is undetermined.
+    /// What each point's value differs by from its prediction by all other runs, or `None` where that is undetermined.
     pub fn leave_one_out_residuals(&self) -> Option<Vec<f64>> {
+        if self.has_derivatives() {
+            return self.left_out().map(|left_out| left_out.residuals);
+        }
         leave_one_out_residuals(self.residual.as_slice(), &self.qr.leverages())
     }
 
-    /// N V̂, the scale of changes in R².
-    fn total_variation(&self) -> f64 {
-        self.values.len() as f64 * self.variance
+    /// Mean leverage h̃ of the values when runs are left out as a whole ([`LeftOut::leverages`]), P/N without derivatives; one if
+    /// a run is not determined by the others.
+    pub fn mean_leverage(&self) -> f64 {
+        let samples = self.samples() as f64;
+        if !self.has_derivatives() {
+            return self.indices.len() as f64 / samples;
+        }
+        self.left_out().map_or(1.0, |left_out| left_out.leverages.iter().sum::<f64>() / samples)
     }
+
+    fn left_out(&self) -> Option<LeftOut> {
+        leave_runs_out(&self.equations, &self.qr.q(), self.residual.as_slice())
+    }
+
+    fn has_derivatives(&self) -> bool {
+        self.rows() > self.samples()
+    }
+
+    /// The scale of changes in R²: N V̂ and the squares of the weighted derivatives.
+    fn total_variation(&self) -> f64 {
+        let derivatives: f64 = self.targets[self.samples()..].iter().map(|target| target * target).sum();
+        self.samples() as f64 * self.variance + derivatives
+    }
+}
+
+/// One per value; `weight` in units of the linear term per derivative.
+pub fn equation_weights(tables: &BasisTables, equations: &Equations, weight: f64) -> Vec<f64> {
+    let points = equations.points_with_derivatives().len();
+    let derivatives = (0..tables.inputs()).flat_map(|j| std::iter::repeat_n(weight * tables.slope_unit(j), points));
+    std::iter::repeat_n(1.0, equations.samples()).chain(derivatives).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::design::NestedLatinHypercube;
+    use crate::design::{NestedLatinHypercube, Samples};
     use crate::index_set::Hyperbolic;
-    use crate::polynomial::Family;
+    use crate::polynomial::{Family, Recurrence};
     use crate::progress::Silent;
     use crate::statistics::Moments;
 
@@ -256,7 +264,8 @@ mod tests {
     }
 
     fn fitted<'a>(tables: &'a BasisTables, values: &'a [f64], terms: Vec<MultiIndex>) -> ActiveBasis<'a> {
-        let mut basis = ActiveBasis::constant(tables, 2, values, variance(values), &Silent).unwrap();
+        let mut basis =
+            ActiveBasis::constant(tables, Response::of(values, 0.0), variance(values), 1.0, &Silent).unwrap();
         basis.extend(terms).unwrap();
         basis
     }

@@ -1,5 +1,6 @@
 //! Error measures of a least-squares fit: R², S² and the corrected S² (equations 17 to 24 of the paper).
 
+use super::equations::{Equations, Gradients};
 use crate::statistics::Moments;
 
 /// Leverages closer to one than this leave a leave-one-out residual undetermined.
@@ -20,17 +21,24 @@ pub struct ErrorMeasures {
 impl ErrorMeasures {
     /// From residuals of the fit, leverages h_i, tr (ΨᵀΨ)⁻¹, the number of terms P, and the variance V̂ of the values.
     pub(crate) fn new(residuals: &[f64], leverages: &[f64], inverse_trace: f64, terms: usize, variance: f64) -> Self {
+        let left_out = leave_one_out_residuals(residuals, leverages);
         let samples = residuals.len() as f64;
-        let mean_square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>() / samples;
-        let r2 = 1.0 - mean_square(residuals) / variance;
-        let error = leave_one_out_residuals(residuals, leverages).map(|left_out| mean_square(&left_out) / variance);
         let correction = samples / (samples - terms as f64) * (1.0 + inverse_trace);
-        Self {
-            r2,
-            s2: error.map(|error| 1.0 - error),
-            corrected_s2: error.filter(|_| terms < residuals.len()).map(|error| 1.0 - error * correction),
-        }
+        let error =
+            left_out.as_deref().filter(|_| terms < residuals.len()).map(|left_out| mean_square(left_out) / variance);
+        let plain = Self::of_residuals(residuals, left_out.as_deref(), variance);
+        Self { corrected_s2: error.map(|error| 1.0 - error * correction), ..plain }
     }
+
+    /// R² and S² from residuals and leave-one-out residuals of the values.
+    pub(crate) fn of_residuals(residuals: &[f64], left_out: Option<&[f64]>, variance: f64) -> Self {
+        let share = |values: &[f64]| 1.0 - mean_square(values) / variance;
+        Self { r2: share(residuals), s2: left_out.map(share), corrected_s2: None }
+    }
+}
+
+fn mean_square(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64
 }
 
 /// Δ_i = (y_i − ŷ_i)/(1 − h_i), equation 22: what a fit without point i misses at point i. `None` if a leverage is one.
@@ -42,19 +50,45 @@ pub fn leave_one_out_residuals(residuals: &[f64], leverages: &[f64]) -> Option<V
         .collect()
 }
 
-/// The values of one component on a design.
+/// The values of one component on a design, perhaps with derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response<'a> {
     /// One value per point.
     pub values: &'a [f64],
+    /// Derivatives in standardized variables.
+    pub gradients: Option<&'a Gradients>,
     /// Differences up to this size are rounding of the model, in the unit of the values.
     pub resolution: f64,
 }
 
-impl Response<'_> {
+impl<'a> Response<'a> {
+    /// Values alone.
+    pub fn of(values: &'a [f64], resolution: f64) -> Self {
+        Self { values, gradients: None, resolution }
+    }
+
+    /// The response as a fit with this weight of derivatives sees it: without them if the weight is 0.
+    pub fn with_weight(self, weight: f64) -> Self {
+        Self { gradients: self.gradients.filter(|_| weight > 0.0), ..self }
+    }
+
     /// V̂ = Σ(y_i − ȳ)²/(N − 1), or `None` if the values are constant but for rounding.
     pub fn variance(&self) -> Option<f64> {
         let variance = Moments::of(self.values).variance();
         (variance > self.resolution * self.resolution).then_some(variance)
+    }
+
+    /// Which equations these are, for so many inputs.
+    pub fn equations(&self, inputs: usize) -> Equations {
+        match self.gradients {
+            Some(gradients) => Equations::with_derivatives(self.values.len(), inputs, gradients.points.clone()),
+            None => Equations::values_alone(self.values.len()),
+        }
+    }
+
+    /// The right-hand sides of the equations, in their order.
+    pub fn targets(&self) -> impl Iterator<Item = f64> + 'a {
+        let slopes: &'a [f64] = self.gradients.map_or(&[], |gradients| &gradients.slopes);
+        self.values.iter().chain(slopes).copied()
     }
 }

@@ -14,16 +14,21 @@ pub(super) const Q_NORM: f64 = 0.6;
 pub(super) const EPSILON_FORWARD: f64 = 1e-5;
 pub(super) const EPSILON_BACKWARD: f64 = 1e-5;
 
-/// Where the paper's table stops; for invariants, where the matrices of the minimum-norm fit begin to cost minutes.
-pub(super) fn maximum(target: Target) -> usize {
+/// Where the paper's table stops; for invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000
+/// values, or 4000 values and derivatives.
+pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool) -> usize {
     match target {
         Target::Eigenvalues => 10_000,
+        _ if derivatives => (4_000 / (1 + inputs)).max(initial(target, inputs, derivatives)),
         _ => 2_000,
     }
 }
 
-/// For invariants: a tenth of a percent of the proportion, a tenth of what the sampling of a few thousand runs leaves open.
-pub(super) const PROPORTION_TOLERANCE: f64 = 1e-3;
+/// For invariants: a tenth of a percent of the proportion, about what the sampling of a million points leaves open; with
+/// derivatives a fifth of that costs few runs more.
+pub(super) fn proportion_tolerance(derivatives: bool) -> f64 {
+    if derivatives { 2e-4 } else { 1e-3 }
+}
 
 /// The paper's designs for its own method, spread ones for invariants.
 pub(super) fn design(target: Target) -> DesignKind {
@@ -33,11 +38,21 @@ pub(super) fn design(target: Target) -> DesignKind {
     }
 }
 
-/// Runs of the first level, and of each enrichment. Eigenvalues need some terms for every pair of inputs at high degree;
-/// invariants few, and at least two levels to judge by, the second twice the first.
-pub(super) fn level(target: Target, inputs: usize) -> usize {
+/// Runs of the first level. Eigenvalues need some terms for every pair of inputs at high degree; invariants few; with
+/// derivatives each run tells r + 1 times as much.
+pub(super) fn initial(target: Target, inputs: usize, derivatives: bool) -> usize {
     match target {
         Target::Eigenvalues => 15 * inputs * inputs,
+        _ if derivatives => (2 * inputs).max(5),
         _ => (inputs * inputs + 7 * inputs).max(10),
+    }
+}
+
+/// Runs of each enrichment: as many again, but with derivatives half as many more. A first level has nothing to be judged by.
+pub(super) fn step(target: Target, inputs: usize, derivatives: bool) -> usize {
+    if target != Target::Eigenvalues && derivatives {
+        (3 * inputs).max(5)
+    } else {
+        initial(target, inputs, derivatives)
     }
 }

@@ -68,6 +68,15 @@ pub enum StudyError {
         /// Where.
         place: Place,
     },
+    /// Derivatives of eigenvalues.
+    #[error(
+        "{place}: eigenvalues have no bounded derivatives where they coalesce; use spectrum.target = \"invariants\" or \
+         remove the key"
+    )]
+    DerivativesOfEigenvalues {
+        /// Where.
+        place: Place,
+    },
     /// A parameter is both a constant and an input.
     #[error("{place}: is also an uncertain input; remove one of the two")]
     ConstantAndInput {

@@ -6,7 +6,7 @@ use super::{FitMethod, ModelSettings, Study};
 use crate::digest::sha256;
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
-use crate::spectrum::Modes;
+use crate::spectrum::{Modes, Target};
 
 pub(super) fn problem_hash(study: &Study) -> String {
     sha256(problem(study).as_bytes())
@@ -27,6 +27,9 @@ pub(super) fn study_hash(study: &Study) -> String {
         let _ = write!(text, " {:?} {:?}", stepwise.epsilon_forward, stepwise.epsilon_backward);
     }
     text.push('\n');
+    if study.spectrum.target != Target::Eigenvalues {
+        let _ = writeln!(text, "derivatives {}", study.uses_derivatives());
+    }
     if let Some(tolerance) = fit.proportion_tolerance {
         let _ = writeln!(text, "proportion tolerance {tolerance:?}");
     }

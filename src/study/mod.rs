@@ -10,7 +10,7 @@ mod validate;
 
 pub use error::{Place, StudyError};
 pub use settings::{
-    DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
+    Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
 };
 
 use crate::input::InputSpace;
@@ -82,6 +82,11 @@ impl Study {
         let constants: Vec<(&str, f64)> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let uncertain: Vec<&str> = self.inputs.names().collect();
         Ok(Box::new(Clutch::new(&constants, &uncertain)?))
+    }
+
+    /// Whether fits use derivatives: asked for, or left open for invariants of a model that has them.
+    pub fn uses_derivatives(&self) -> bool {
+        self.fit.derivatives.are_used(self.spectrum.target, &self.model)
     }
 
     /// Hash of what is asked: model, constants, inputs and spectrum. Two studies with the same hash have the same true

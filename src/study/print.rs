@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{DesignKind, FitMethod, FitSettings, ModelSettings, STUDY_FORMAT, Study};
+use super::{DesignKind, FitMethod, ModelSettings, STUDY_FORMAT, Study};
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
 use crate::spectrum::{Modes, Target};
@@ -41,11 +41,12 @@ pub(super) fn study(study: &Study) -> String {
     file.line("maximum", study.design.maximum, "model runs never exceeded");
 
     file.table("fit");
-    fit(&mut file, &study.fit);
+    fit(&mut file, study);
     file.text
 }
 
-fn fit(file: &mut Printer, fit: &FitSettings) {
+fn fit(file: &mut Printer, study: &Study) {
+    let fit = &study.fit;
     let (explanation, degree) = match fit.method {
         FitMethod::Stepwise(_) => ("the paper's algorithm", "p_max"),
         FitMethod::Omp(_) => ("orthogonal matching pursuit", "of the candidates"),
@@ -62,6 +63,11 @@ fn fit(file: &mut Printer, fit: &FitSettings) {
         let (forward, backward) = (float(stepwise.epsilon_forward), float(stepwise.epsilon_backward));
         file.line("epsilon_forward", forward, "ε₁: a term is kept if it raises R² by this");
         file.line("epsilon_backward", backward, "ε₂: a term is dropped if that lowers R² by less");
+    }
+    if study.spectrum.target != Target::Eigenvalues {
+        let used =
+            if study.uses_derivatives() { "used in the fit: r + 1 equations per run" } else { "not used in the fit" };
+        file.line("derivatives", fit.derivatives.describe(), used);
     }
     let tolerance = "estimated relative error of the stability proportion that is small enough";
     match fit.proportion_tolerance {

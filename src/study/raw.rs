@@ -77,6 +77,14 @@ pub(super) struct Fit {
     pub epsilon_forward: Option<Spanned<f64>>,
     pub epsilon_backward: Option<Spanned<f64>>,
     pub proportion_tolerance: Option<Spanned<f64>>,
+    pub derivatives: Option<Spanned<Derivatives>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "derivatives must be \"auto\", true or false")]
+pub(super) enum Derivatives {
+    Flag(bool),
+    Word(String),
 }
 
 /// A table whose order matters: the order of inputs is the order of the standardized variables.

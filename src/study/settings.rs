@@ -20,6 +20,13 @@ impl ModelSettings {
             Self::Clutch { .. } => "clutch",
         }
     }
+
+    /// Whether the model knows the derivatives of its state matrix.
+    pub fn has_derivatives(&self) -> bool {
+        match self {
+            Self::Clutch { .. } => true,
+        }
+    }
 }
 
 /// What of the spectrum is expanded.
@@ -79,6 +86,38 @@ pub struct FitSettings {
     /// Estimated relative error of the stability proportion at which the design is large enough, in (0, 1\]; without it
     /// the fits of the components alone decide.
     pub proportion_tolerance: Option<f64>,
+    /// Whether derivatives of the components enter the fit.
+    pub derivatives: Derivatives,
+}
+
+/// Whether derivatives of the components by the inputs enter a fit beside the values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Derivatives {
+    /// For invariants, if the model has them.
+    Auto,
+    /// Yes; a model without them is an error.
+    Always,
+    /// No.
+    Never,
+}
+
+impl Derivatives {
+    pub(super) fn are_used(self, target: Target, model: &ModelSettings) -> bool {
+        match self {
+            Self::Auto => target == Target::Invariants && model.has_derivatives(),
+            Self::Always => true,
+            Self::Never => false,
+        }
+    }
+
+    /// The value in study files.
+    pub fn describe(self) -> &'static str {
+        match self {
+            Self::Auto => "\"auto\"",
+            Self::Always => "true",
+            Self::Never => "false",
+        }
+    }
 }
 
 /// Fitting methods.

@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use super::error::{Place, StudyError};
 use super::settings::{
-    DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
+    Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
 };
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::input::{Input, InputSpace, Marginal, Uniform};
@@ -54,14 +54,16 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     let constants = lines.constants(raw.model.constants, &inputs)?;
     let dimension = inputs.dimension();
     let spectrum = lines.spectrum(raw.spectrum)?;
-    let fit = lines.fit(raw.fit, spectrum.target)?;
-    let design = lines.design(raw.design, spectrum.target, dimension)?;
+    let model = ModelSettings::Clutch { constants };
+    let fit = lines.fit(raw.fit, spectrum.target, &model)?;
+    let derivatives = fit.derivatives.are_used(spectrum.target, &model);
+    let design = lines.design(raw.design, spectrum.target, dimension, derivatives)?;
     let max_degree = fit.method.max_degree();
     let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
     if numbers > LARGEST_TABLES {
         return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
     }
-    Ok(Study { name, seed, model: ModelSettings::Clutch { constants }, inputs, spectrum, design, fit })
+    Ok(Study { name, seed, model, inputs, spectrum, design, fit })
 }
 
 /// Knows the text, so that errors can name lines.
@@ -217,7 +219,13 @@ impl Lines<'_> {
         }
     }
 
-    fn design(&self, raw: raw::Design, target: Target, inputs: usize) -> Result<DesignSettings, StudyError> {
+    fn design(
+        &self,
+        raw: raw::Design,
+        target: Target,
+        inputs: usize,
+        derivatives: bool,
+    ) -> Result<DesignSettings, StudyError> {
         let kind = match raw.kind {
             Some(word) => self.word("design.kind", &word, &DESIGNS.map(|kind| (kind.name(), kind)))?,
             None => defaults::design(target),
@@ -227,11 +235,12 @@ impl Lines<'_> {
             None => Ok(default),
         };
         let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
-        let level = defaults::level(target, inputs);
+        let default_initial = defaults::initial(target, inputs, derivatives);
+        let default_step = defaults::step(target, inputs, derivatives);
         let initial_was_given = raw.initial.is_some();
-        let maximum = size("design.maximum", raw.maximum, 2, defaults::maximum(target))?;
-        let initial = size("design.initial", raw.initial, 2, level.min(maximum))?;
-        let step = size("design.step", raw.step, 1, level)?;
+        let maximum = size("design.maximum", raw.maximum, 2, defaults::maximum(target, inputs, derivatives))?;
+        let initial = size("design.initial", raw.initial, 2, default_initial.min(maximum))?;
+        let step = size("design.step", raw.step, 1, default_step)?;
         match maximum_place {
             Some(place) if initial_was_given && initial > maximum => Err(StudyError::OutOfRange {
                 place,
@@ -242,7 +251,12 @@ impl Lines<'_> {
         }
     }
 
-    fn fit(&self, raw: raw::Fit, target: Target) -> Result<FitSettings, StudyError> {
+    fn fit(&self, raw: raw::Fit, target: Target, model: &ModelSettings) -> Result<FitSettings, StudyError> {
+        let derivatives = match raw.derivatives {
+            Some(derivatives) => self.derivatives(derivatives, target)?,
+            None => Derivatives::Auto,
+        };
+        let default_tolerance = defaults::proportion_tolerance(derivatives.are_used(target, model));
         let share = |value: f64| value > 0.0 && value <= 1.0;
         let in_share = "a number above 0 and at most 1";
         let max_degree = match raw.max_degree {
@@ -255,7 +269,7 @@ impl Lines<'_> {
                 let (resolved, expected) = (|value| (1e-5..=1.0).contains(&value), "a number from 1e-5 to 1");
                 Some(self.number("fit.proportion_tolerance", Some(value), 1.0, expected, resolved)?)
             }
-            None => (target == Target::Invariants).then_some(defaults::PROPORTION_TOLERANCE),
+            None => (target == Target::Invariants).then_some(default_tolerance),
         };
         let smooth = Smooth { max_degree, s2_target };
         let method = match &raw.method {
@@ -276,7 +290,23 @@ impl Lines<'_> {
                 smooth_method(smooth)
             }
         };
-        Ok(FitSettings { method, proportion_tolerance })
+        Ok(FitSettings { method, proportion_tolerance, derivatives })
+    }
+
+    fn derivatives(&self, raw: Spanned<raw::Derivatives>, target: Target) -> Result<Derivatives, StudyError> {
+        let place = self.place("fit.derivatives", &raw);
+        match raw.into_inner() {
+            raw::Derivatives::Flag(true) if target == Target::Eigenvalues => {
+                Err(StudyError::DerivativesOfEigenvalues { place })
+            }
+            raw::Derivatives::Flag(true) => Ok(Derivatives::Always),
+            raw::Derivatives::Flag(false) => Ok(Derivatives::Never),
+            raw::Derivatives::Word(word) if word == "auto" => Ok(Derivatives::Auto),
+            raw::Derivatives::Word(word) => {
+                let expected = "\"auto\", true or false".to_owned();
+                Err(StudyError::OutOfRange { place, found: format!("{word:?}"), expected })
+            }
+        }
     }
 
     fn stepwise(

@@ -81,8 +81,8 @@ clutch_invariant_derivatives.csv
     set = generic       six random points of the box, nominal dampers
     set = exceptional   six points of the box at or next to coalescences:
 
-        |d| = 0.02      nominal dampers
-        |d| = 0.01      nominal dampers
+        |d| = 0.019     nominal dampers
+        |d| = 0.0096    nominal dampers
         |d| = 1e-3      beside the fifth, mu moved
         |d| = 1e-5      beside the sixth, gamma_2 moved
         the pair coalesces, c_C = 4.2 (mu and gamma_1 solved for)
@@ -112,7 +112,7 @@ three_mode_derivatives.csv
     set = coalescence   the five rows of its set `coalescence`
 
 "coalesces" means as nearly as double-precision inputs can say it (both rounded to
-nearest): |d| is then below 1e-12, while d changes by some 1e3 per unit of mu.
+nearest): |d| is then about 1e-14, d changing by about 400 per unit of mu.
 
 Inputs are written so that they read back as the very doubles used, everything else
 with 17 digits.
@@ -144,7 +144,8 @@ or so, but their symmetric functions to more than 50.
 
 It prints relative differences, real and imaginary parts each by themselves, and
 fails if any exceeds 1e-20 (1e-15 for the eigenvalues, which are stored with 17
-digits).
+digits).  Found: eigenvalues 3e-17; derivatives of A 1e-35; the two steps at most
+2e-25 and perturbation theory at most 2e-28, at coalescences much as elsewhere.
 """
 
 import csv
@@ -221,8 +222,8 @@ def assemble(mu, r, l, springs, f):
 
 def lower_rows(values):
     """Rows 7 to 12 of the state matrix, of 16 numbers or symbols."""
-    mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, mass, inertia_x, inertia_y = values[:11]
-    *dampers, c_f = values[11:]
+    mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l = values[:8]
+    mass, inertia_x, inertia_y, *dampers, c_f = values[8:]
     springs = [
         gamma_1 * k_p / 4,
         k_p / (4 * gamma_1),
