@@ -30,6 +30,8 @@ pub struct BuildReport {
     pub seed: u64,
     /// Every model run the build spent.
     pub direct_computations: u64,
+    /// Runs whose derivatives entered the fit.
+    pub gradients: u64,
     /// Number of points of each design level.
     pub levels: Vec<u64>,
     /// Fit of every component.
@@ -106,6 +108,16 @@ impl FitReport {
             SettingValue::Number(tolerance) => Some(tolerance),
             _ => None,
         });
+        let counts = surrogate.training.counts;
+        let uses_derivatives = surrogate.training.settings.iter().any(|setting| setting.key == "derivatives");
+        if uses_derivatives && counts.gradients < counts.values {
+            warnings.push(format!(
+                "in {} of {} model runs a group of modes was too close to other modes for derivatives; of these, values alone \
+                 entered the fit",
+                counts.values - counts.gradients,
+                counts.values
+            ));
+        }
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if spectrum.modes leaves out modes that can become unstable, \
@@ -161,11 +173,21 @@ impl BuildReport {
             bytes,
             seed: surrogate.training.seed,
             direct_computations: surrogate.training.counts.direct_computations,
+            gradients: surrogate.training.counts.gradients,
             levels: surrogate.training.levels.clone(),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
             elapsed_seconds,
         }
+    }
+}
+
+/// How many of the runs came with derivatives, to follow the number of runs.
+pub(super) fn with_derivatives(gradients: u64, runs: u64) -> String {
+    match gradients {
+        0 => String::new(),
+        all if all == runs => " with derivatives".to_owned(),
+        some => format!(", {} with derivatives", count(some)),
     }
 }
 
@@ -181,9 +203,10 @@ impl fmt::Display for BuildReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} model runs (design levels {}), {:.2} s, seed {}\n",
+            "{}: {} model runs{} (design levels {}), {:.2} s, seed {}\n",
             self.study,
             count(self.direct_computations),
+            with_derivatives(self.gradients, self.direct_computations),
             level_list(&self.levels),
             self.elapsed_seconds,
             self.seed

@@ -1,6 +1,6 @@
 //! What is inside a surrogate file.
 
-use super::build::{FitReport, level_list};
+use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::table::{Align, Table, count, significant};
 use crate::artifact::{Artifact, Format};
@@ -36,6 +36,8 @@ pub struct InspectReport {
     pub unknown_sections: Vec<u16>,
     /// Every model run the build spent.
     pub direct_computations: u64,
+    /// Runs whose derivatives entered the fit.
+    pub gradients: u64,
     /// Runs that failed.
     pub failed_runs: u64,
     /// Fitting method.
@@ -112,6 +114,7 @@ impl InspectReport {
             content_id: artifact.content_id.clone(),
             unknown_sections: artifact.unknown_sections.clone(),
             direct_computations: surrogate.training.counts.direct_computations,
+            gradients: surrogate.training.counts.gradients,
             failed_runs: surrogate.training.counts.failed,
             method: surrogate.training.method.clone(),
             settings: surrogate.training.settings.iter().map(setting).collect(),
@@ -180,7 +183,15 @@ impl fmt::Display for InspectReport {
         let facts = [
             ("study", self.study.clone()),
             ("built by", format!("pcc {}", self.tool_version)),
-            ("model runs", format!("{}, {} failed", count(self.direct_computations), self.failed_runs)),
+            (
+                "model runs",
+                format!(
+                    "{}{}, {} failed",
+                    count(self.direct_computations),
+                    with_derivatives(self.gradients, self.direct_computations),
+                    self.failed_runs
+                ),
+            ),
             ("design", format!("{}, levels {}, seed {}", self.design, level_list(&self.levels), self.seed)),
             ("method", format!("{}: {}", self.method, settings.join(", "))),
             ("modes", format!("{} by frequency rank", modes.join(", "))),

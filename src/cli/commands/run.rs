@@ -44,19 +44,30 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
         .with_context(|| format!("after the surrogate was written to {}", build.file))?;
     let mut methods = vec![MethodRow::new(method, &build, &compare)];
     if options.study.is_none() {
-        let papers = Study::from_toml(PAPERS_STUDY).context("the built-in study by the paper's method")?;
-        let method = method_name(&papers);
-        let (_, build, compare) = build_and_compare(context, options, papers, &source)?;
-        methods.push(MethodRow::new(method, &build, &compare));
+        for study in other_built_in_studies()? {
+            let method = method_name(&study);
+            let (_, build, compare) = build_and_compare(context, options, study, &source)?;
+            methods.insert(0, MethodRow::new(method, &build, &compare));
+        }
     }
     context.print(&RunReport { build, eval, compare, methods })?;
     Ok(Ending::Done)
+}
+
+/// The built-in study without derivatives, and by the paper's method.
+fn other_built_in_studies() -> anyhow::Result<[Study; 2]> {
+    let mut values_alone = Study::from_toml(&format!("{BUILT_IN_STUDY}\n[fit]\nderivatives = false\n"))
+        .context("the built-in study without derivatives")?;
+    values_alone.name.push_str("-values-alone");
+    let papers = Study::from_toml(PAPERS_STUDY).context("the built-in study by the paper's method")?;
+    Ok([values_alone, papers])
 }
 
 /// What a study expands, in words.
 fn method_name(study: &Study) -> &'static str {
     match study.spectrum.target {
         Target::Eigenvalues => "eigenvalue components",
+        Target::Invariants if study.uses_derivatives() => "invariants with derivatives",
         Target::Invariants => "invariants",
     }
 }
