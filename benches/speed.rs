@@ -5,9 +5,9 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pcc::artifact::decode;
+use pcc::design::Runner;
 use pcc::eval::monte_carlo;
 use pcc::input::random_point;
-use pcc::model::Model;
 use pcc::progress::Silent;
 use pcc::random::Purpose;
 use pcc::study::Study;
@@ -27,7 +27,6 @@ fn study() -> Study {
 
 fn direct_computation(criterion: &mut Criterion) {
     let study = study();
-    let model: Box<dyn Model> = study.model().expect("the shipped study fits its model");
     let points: Vec<Vec<f64>> = (0..1000)
         .map(|index| {
             let mut standardized = vec![0.0; study.inputs.dimension()];
@@ -35,15 +34,20 @@ fn direct_computation(criterion: &mut Criterion) {
             study.inputs.physical(&standardized)
         })
         .collect();
+    let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let mut group = criterion.benchmark_group("model");
     group.throughput(Throughput::Elements(points.len() as u64));
-    group.bench_function("1000 direct computations, one core", |bencher| {
-        bencher.iter(|| {
-            for point in &points {
-                black_box(model.eigenvalues(black_box(point)).expect("the clutch converges"));
-            }
+    for (name, derivatives) in [("", false), (" with all eight derivatives", true)] {
+        group.bench_function(format!("1000 direct computations{name}, one core"), |bencher| {
+            bencher.iter(|| {
+                one_core.install(|| {
+                    let runner = Runner::new(&study).expect("the shipped study fits its model");
+                    let runs = runner.with_derivatives(derivatives).run(black_box(&points), &Silent);
+                    assert_eq!(black_box(runs.expect("the clutch converges"))[0].reduced.is_some(), derivatives);
+                });
+            });
         });
-    });
+    }
     group.finish();
 }
 

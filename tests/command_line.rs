@@ -599,6 +599,12 @@ fn studies_by_invariants_that_cannot_be_built_say_why() {
         ("a key of another method", format!("{study}[fit]\nq_norm = 0.5\n")),
         ("an unknown method", format!("{study}[fit]\nmethod = \"lasso\"\n")),
         ("a tolerance too small to be estimated", format!("{study}[fit]\nproportion_tolerance = 1e-9\n")),
+        (
+            "derivatives of eigenvalues",
+            format!("{}[fit]\nderivatives = true\n", study.replace("\"invariants\"", "\"eigenvalues\"")),
+        ),
+        ("derivatives neither yes nor no", format!("{study}[fit]\nderivatives = \"yes\"\n")),
+        ("derivatives that are a number", format!("{study}[fit]\nderivatives = 3\n")),
         ("an unknown target", study.replace("\"invariants\"", "\"invariant\"")),
     ];
     for (name, text) in cases {

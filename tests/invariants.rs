@@ -5,11 +5,15 @@ mod support;
 use pcc::progress::Silent;
 use pcc::reference::compare;
 use pcc::spectrum::OutputKind;
-use pcc::study::{FitMethod, Smooth, Study};
-use support::{build, invariants_study, shipped_study};
+use pcc::study::{Derivatives, FitMethod, Smooth, Study};
+use support::{build, invariants_study, shipped_study, text};
 
 /// Inputs, most model runs, largest error of the proportion and share of misclassified points in percent.
-const BARS: [(usize, u64, f64, f64); 5] =
+type Bar = (usize, u64, f64, f64);
+
+const WITH_DERIVATIVES: [Bar; 5] =
+    [(1, 20, 0.0, 0.0), (2, 20, 0.0, 0.0), (3, 20, 0.01, 0.002), (5, 40, 0.05, 0.02), (8, 70, 0.03, 0.01)];
+const VALUES_ALONE: [Bar; 5] =
     [(1, 40, 0.0, 0.0), (2, 40, 0.0, 0.0), (3, 60, 0.01, 0.002), (5, 120, 0.05, 0.05), (8, 240, 0.12, 0.1)];
 
 /// Points of the comparison; a single point weighs 0.002 % of them and up to 0.01 % of the proportion.
@@ -19,20 +23,47 @@ const POINTS: u64 = 50_000;
 const SEEDS: [u64; 2] = [1, 2];
 
 #[test]
-fn every_row_stays_within_its_bar() {
-    for (inputs, most_runs, largest_error, most_misclassified) in BARS {
-        let mut study = invariants_study(inputs);
-        for seed in SEEDS {
-            study.seed = seed;
-            let surrogate = build(&study);
-            let runs = surrogate.training.counts.direct_computations;
-            let comparison = compare(&surrogate, &study, POINTS, 1, &Silent).unwrap();
-            let (error, misclassified) =
-                (comparison.relative_error_percent().unwrap(), comparison.misclassified_percent());
-            let row = format!("r = {inputs}, seed {seed}: {runs} runs, {error} %, {misclassified} % misclassified");
-            assert!(runs <= most_runs && error <= largest_error && misclassified <= most_misclassified, "{row}");
-        }
+fn every_row_with_derivatives_stays_within_its_bar() {
+    WITH_DERIVATIVES.iter().for_each(|bar| stays_within(*bar, ""));
+}
+
+#[test]
+fn every_row_of_values_alone_stays_within_its_bar() {
+    VALUES_ALONE.iter().for_each(|bar| stays_within(*bar, "[fit]\nderivatives = false\n"));
+}
+
+fn stays_within((inputs, most_runs, largest_error, most_misclassified): Bar, more: &str) {
+    let mut study = Study::from_toml(&(text(&format!("surrogates/clutch-r{inputs}.toml")) + more)).unwrap();
+    for seed in SEEDS {
+        study.seed = seed;
+        let surrogate = build(&study);
+        let runs = surrogate.training.counts.direct_computations;
+        let comparison = compare(&surrogate, &study, POINTS, 1, &Silent).unwrap();
+        let (error, misclassified) = (comparison.relative_error_percent().unwrap(), comparison.misclassified_percent());
+        let row = format!("r = {inputs}, seed {seed}: {runs} runs, {error} %, {misclassified} % misclassified");
+        assert!(runs <= most_runs && error <= largest_error && misclassified <= most_misclassified, "{row}");
     }
+}
+
+/// The file says what was used: every run counts with its derivatives, and errors leave out whole runs.
+#[test]
+fn derivatives_are_recorded() {
+    use pcc::surrogate::{LeaveOut, SettingValue};
+    let with = build(&invariants_study(3));
+    let mut study = invariants_study(3);
+    study.fit.derivatives = Derivatives::Never;
+    (study.design.initial, study.design.step) = (30, 30);
+    let without = build(&study);
+    for (surrogate, used, leaves_out) in [(&with, true, LeaveOut::Run), (&without, false, LeaveOut::Row)] {
+        let counts = surrogate.training.counts;
+        assert_eq!(counts.gradients, if used { counts.values } else { 0 });
+        assert_eq!((counts.values, counts.direct_computations), (counts.direct_computations, counts.values));
+        let flag = surrogate.training.settings.iter().find(|setting| setting.key == "derivatives");
+        assert_eq!(flag.map(|setting| &setting.value), used.then_some(&SettingValue::Flag(true)));
+        assert!(surrogate.expansions.iter().all(|expansion| expansion.leave_out == leaves_out));
+    }
+    let largest = *with.training.levels.last().unwrap();
+    assert!(3 * largest <= *without.training.levels.last().unwrap(), "{largest} runs");
 }
 
 #[test]
@@ -80,17 +111,17 @@ fn methods_and_targets_combine_freely() {
 #[test]
 fn the_design_grows_until_the_decision_is_accurate() {
     let mut study = invariants_study(5);
-    (study.design.initial, study.design.step) = (30, 30);
+    (study.design.initial, study.design.step) = (10, 10);
     study.fit.proportion_tolerance = Some(0.05);
     let loose = build(&study);
-    study.fit.proportion_tolerance = Some(3e-4);
+    study.fit.proportion_tolerance = Some(1e-4);
     let tight = build(&study);
-    assert_eq!(loose.training.levels[..2], [30, 60]);
+    assert_eq!(loose.training.levels[..2], [10, 20]);
     assert!(tight.training.levels.starts_with(&loose.training.levels));
     assert!(tight.training.levels.len() > loose.training.levels.len());
     let error = tight.decision.proportion_error.unwrap();
-    assert!(error <= 3e-4, "{error}");
-    study.design.maximum = 30;
+    assert!(error <= 1e-4, "{error}");
+    study.design.maximum = 10;
     assert_eq!(build(&study).decision.proportion_error, None, "one level cannot be judged by itself");
 }
 
@@ -100,8 +131,8 @@ fn the_design_grows_until_the_decision_is_accurate() {
 fn the_estimated_error_of_the_proportion_is_of_the_order_of_the_true_one() {
     let mut ratios = Vec::new();
     for seed in 1..=6 {
-        for level in [40, 60] {
-            let mut study = invariants_study(5);
+        for level in [12, 16] {
+            let mut study = invariants_study(8);
             study.seed = seed;
             study.fit.proportion_tolerance = Some(1e-5);
             (study.design.initial, study.design.step, study.design.maximum) = (level, level, 2 * level);

@@ -56,6 +56,9 @@ impl SecondOrder {
         let mass = self.factored()?;
         let (stiffness, damping) = self.solved(&mass)?;
         let derivative = |by: &Self| {
+            if is_zero(&by.mass) {
+                return by.solved(&mass).map(|(stiffness, damping)| assemble(&stiffness, &damping, 0.0));
+            }
             let moved = Self {
                 mass: by.mass.clone(),
                 damping: &by.damping - &by.mass * &damping,
@@ -76,9 +79,16 @@ impl SecondOrder {
 
     /// M⁻¹K and M⁻¹C.
     fn solved(&self, mass: &LU<f64, Dyn, Dyn>) -> Result<(DMatrix<f64>, DMatrix<f64>), ModelError> {
-        let solve = |matrix| mass.solve(matrix).ok_or(ModelError::SingularMass);
+        let solve = |matrix: &DMatrix<f64>| match is_zero(matrix) {
+            true => Ok(matrix.clone()),
+            false => mass.solve(matrix).ok_or(ModelError::SingularMass),
+        };
         Ok((solve(&self.stiffness)?, solve(&self.damping)?))
     }
+}
+
+fn is_zero(matrix: &DMatrix<f64>) -> bool {
+    matrix.iter().all(|&entry| entry == 0.0)
 }
 
 /// \[0, identity · I; −stiffness, −damping\].

@@ -216,3 +216,21 @@ impl fmt::Display for BuildReport {
         writeln!(f, "written to {} ({} bytes)", self.file, count(self.bytes))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::artifact::decode;
+
+    #[test]
+    fn runs_without_derivatives_are_counted_and_reported() {
+        let mut surrogate = decode(include_bytes!("../../surrogates/clutch-r1.pcc")).unwrap().surrogate;
+        assert_eq!(FitReport::warnings_of(&surrogate), Vec::<String>::new());
+        let runs = surrogate.training.counts.values;
+        assert_eq!(with_derivatives(surrogate.training.counts.gradients, runs), " with derivatives");
+        surrogate.training.counts.gradients -= 2;
+        assert_eq!(with_derivatives(surrogate.training.counts.gradients, runs), ", 13 with derivatives");
+        let said = "in 2 of 15 model runs a group of modes was too close to other modes for derivatives";
+        assert!(FitReport::warnings_of(&surrogate)[0].starts_with(said));
+    }
+}

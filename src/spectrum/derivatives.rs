@@ -46,7 +46,7 @@ impl ReducedSystem {
         let subspace = schur.subspace(&positions);
         subspace.is_separated().then(|| Self {
             modes: modes.to_vec(),
-            derivatives: derivatives.iter().map(|derivative| between(&subspace, derivative)).collect(),
+            derivatives: between(&subspace, derivatives),
             state_matrix: subspace.restricted,
         })
     }
@@ -74,11 +74,20 @@ impl Output {
     }
 }
 
-/// W D V for a real D.
-fn between(subspace: &Subspace, derivative: &DMatrix<f64>) -> DMatrix<Complex<f64>> {
-    let parts =
-        [subspace.right.map(|entry| entry.re), subspace.right.map(|entry| entry.im)].map(|part| derivative * part);
-    &subspace.left * parts[0].zip_map(&parts[1], Complex::new)
+/// W D_j V for real D_j.
+fn between(subspace: &Subspace, derivatives: &[DMatrix<f64>]) -> Vec<DMatrix<Complex<f64>>> {
+    let (size, modes) = subspace.right.shape();
+    // Real and imaginary parts side by side: real products are cheaper.
+    let right = DMatrix::from_fn(size, 2 * modes, |i, k| {
+        let entry = subspace.right[(i, k % modes)];
+        if k < modes { entry.re } else { entry.im }
+    });
+    let reduced = |derivative: &DMatrix<f64>| {
+        let product = derivative * &right;
+        let parts = (product.columns(0, modes), product.columns(modes, modes));
+        &subspace.left * parts.0.zip_map(&parts.1, Complex::new)
+    };
+    derivatives.iter().map(reduced).collect()
 }
 
 /// ds, dc_{k−2}, …, dc_0 for T of a group and W dA V of one input.
