@@ -1,11 +1,13 @@
 //! Fitting methods: from values on a design, perhaps with derivatives, to one sparse expansion.
 
 pub mod auto;
+mod cross_validation;
 mod kernel;
 pub mod minimum_norm;
 pub mod omp;
 mod prior;
 mod prior_search;
+mod pursuit_path;
 mod regularized;
 pub mod stepwise;
 

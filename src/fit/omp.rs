@@ -16,15 +16,13 @@
 //! Candidate sets {‖α‖_q ≤ p} grow degree by degree for each norm q until degrees bring nothing more or candidates
 //! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
 
+use super::cross_validation::{CrossValidation, Problem};
+use super::pursuit_path::Path;
 use super::{BlindResiduals, Fitted, Stop, WEIGHTS};
 use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
 use crate::progress::{Interrupted, Observer};
-use crate::regression::{ActiveBasis, BasisTables, Equations, ErrorMeasures, Response, equation_weights};
+use crate::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
 use crate::study::Smooth;
-use nalgebra::{DMatrix, DVector};
-
-/// Parts of the design that are left out in turn.
-const FOLDS: usize = 10;
 
 /// Norms q tried, from those that favour single inputs to all interactions.
 const Q_NORMS: [f64; 3] = [0.5, 0.75, 1.0];
@@ -41,18 +39,8 @@ const CANDIDATES_PER_DERIVATIVE: usize = 1;
 /// So many candidates are always tried: they cost nothing.
 const FEW_CANDIDATES: usize = 100;
 
-/// A path ends so many terms after its best one, as a share of that, and at least.
-const STALL_SHARE: f64 = 0.3;
-const LEAST_STALL: usize = 6;
-
-/// Least share of its squared length by which a candidate must differ from the terms before it.
-const INDEPENDENT: f64 = 1e-10;
-
 /// Mean square error relative to the variance at which nothing but rounding is left to explain.
 const EXACT: f64 = 1e-26;
-
-/// So many more equations than terms must hold for that to be no chance.
-const EXACT_SURPLUS: usize = 1;
 
 /// The candidates of every norm, degree by degree.
 #[derive(Debug, Clone, PartialEq)]
@@ -252,195 +240,6 @@ fn chosen(
     let degree = basis.indices().iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
     let fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
     Ok(Fitted { derivative_weight: response.gradients.map(|_| weight), ..fitted })
-}
-
-/// Weighted equations on a set of candidates.
-struct Problem {
-    equations: Equations,
-    columns: DMatrix<f64>,
-    targets: Vec<f64>,
-}
-
-impl Problem {
-    fn new(tables: &BasisTables, response: Response<'_>, set: &[MultiIndex], weight: f64) -> Self {
-        let response = response.with_weight(weight);
-        let equations = response.equations(tables.inputs());
-        let weights = equation_weights(tables, &equations, weight);
-        let mut columns = tables.stacked(set, &equations);
-        for mut column in columns.column_iter_mut() {
-            column.iter_mut().zip(&weights).for_each(|(entry, weight)| *entry *= weight);
-        }
-        let targets = response.targets().zip(&weights).map(|(target, weight)| target * weight).collect();
-        Self { equations, columns, targets }
-    }
-
-    /// The terms of a path that meets all equations, values and derivatives, to a mean square residual of `exact` with fewer
-    /// terms than there are equations.
-    fn exact_path(&self, exact: f64) -> Option<Vec<usize>> {
-        let (rows, samples) = (self.equations.rows(), self.equations.samples());
-        let mut path = Path::new(&self.columns, &self.targets);
-        while rows > samples && path.terms.len() + EXACT_SURPLUS < rows && path.step().is_some() {
-            if path.residual.norm_squared() <= exact * rows as f64 {
-                return Some(path.terms);
-            }
-        }
-        None
-    }
-}
-
-/// What cross-validation says of the paths on one set of candidates.
-struct CrossValidation {
-    /// The number of terms with the smallest error.
-    terms: usize,
-    /// Mean square of the residuals of values.
-    error: f64,
-    /// What paths of so many terms miss at the values they did not see.
-    residuals: Vec<f64>,
-}
-
-impl CrossValidation {
-    fn new(problem: &Problem, observer: &dyn Observer) -> Result<Self, Interrupted> {
-        let samples = problem.equations.samples();
-        let folds = FOLDS.min(samples);
-        let mut by_fold = Vec::with_capacity(folds);
-        for fold in 0..folds {
-            observer.check()?;
-            by_fold.push(left_out(problem, fold, folds));
-        }
-        let longest = by_fold.iter().map(Vec::len).min().unwrap_or(0);
-        let error = |terms: usize| -> f64 {
-            by_fold.iter().map(|path| path[terms - 1].norm_squared()).sum::<f64>() / samples as f64
-        };
-        let (terms, error) = (1..=longest)
-            .map(|terms| (terms, error(terms)))
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .unwrap_or((1, f64::INFINITY));
-        let mut residuals = vec![0.0; samples];
-        for (fold, path) in by_fold.iter().enumerate().filter(|_| longest > 0) {
-            let points = (fold..samples).step_by(folds);
-            points.zip(path[terms - 1].iter()).for_each(|(i, &residual)| residuals[i] = residual);
-        }
-        Ok(Self { terms, error, residuals })
-    }
-}
-
-/// The residuals at the values of one fold after each term of the path on the other runs.
-fn left_out(problem: &Problem, fold: usize, folds: usize) -> Vec<DVector<f64>> {
-    let Problem { equations, columns, targets } = problem;
-    let (inside, others): (Vec<usize>, Vec<usize>) = (0..equations.samples()).partition(|i| i % folds == fold);
-    let mut outside: Vec<usize> = others.iter().flat_map(|&i| equations.block(i)).collect();
-    outside.sort_unstable();
-    let (seen, unseen) = (columns.select_rows(&outside), columns.select_rows(&inside));
-    let seen_targets: Vec<f64> = outside.iter().map(|&i| targets[i]).collect();
-    let mut residual = DVector::from_iterator(inside.len(), inside.iter().map(|&i| targets[i]));
-    let mut path = Path::new(&seen, &seen_targets);
-    let mut continued: Vec<DVector<f64>> = Vec::new();
-    let mut history: Vec<DVector<f64>> = Vec::new();
-    let mut best = (0, f64::INFINITY);
-    while history.len() < best.0 + LEAST_STALL.max((STALL_SHARE * best.0 as f64) as usize) {
-        let Some(step) = path.step() else { break };
-        // The new orthonormal column, continued to the points of the fold.
-        let mut column = unseen.column(step.candidate).into_owned();
-        for (known, coefficient) in continued.iter().zip(&step.coefficients) {
-            column.axpy(-coefficient, known, 1.0);
-        }
-        column /= step.length;
-        residual.axpy(-step.part, &column, 1.0);
-        continued.push(column);
-        history.push(residual.clone());
-        if residual.norm_squared() < best.1 {
-            best = (history.len(), residual.norm_squared());
-        }
-    }
-    history
-}
-
-/// A path: the terms so far, their orthonormal columns, and what the next step needs of every candidate.
-struct Path<'a> {
-    columns: &'a DMatrix<f64>,
-    terms: Vec<usize>,
-    orthonormal: Vec<DVector<f64>>,
-    residual: DVector<f64>,
-    /// ψᵀe.
-    products: DVector<f64>,
-    /// Squared length of the part orthogonal to the terms, and of the whole.
-    lengths: DVector<f64>,
-    whole_lengths: DVector<f64>,
-}
-
-/// The term that joined in a step.
-struct Step {
-    candidate: usize,
-    /// Its products with the orthonormal columns before it.
-    coefficients: Vec<f64>,
-    /// Length of the rest.
-    length: f64,
-    /// Product of the new orthonormal column with the residual.
-    part: f64,
-}
-
-impl<'a> Path<'a> {
-    fn new(columns: &'a DMatrix<f64>, values: &[f64]) -> Self {
-        let residual = DVector::from_column_slice(values);
-        let lengths =
-            DVector::from_iterator(columns.ncols(), columns.column_iter().map(|column| column.norm_squared()));
-        Self {
-            columns,
-            terms: Vec::new(),
-            orthonormal: Vec::new(),
-            products: columns.tr_mul(&residual),
-            residual,
-            whole_lengths: lengths.clone(),
-            lengths,
-        }
-    }
-
-    /// The constant first, then the candidate that would lower the residual most.
-    fn best_candidate(&self) -> Option<usize> {
-        if self.terms.is_empty() {
-            return Some(0);
-        }
-        let mut best = (0.0, None);
-        for candidate in 0..self.columns.ncols() {
-            if self.lengths[candidate] > INDEPENDENT * self.whole_lengths[candidate] {
-                let gain = self.products[candidate] * self.products[candidate] / self.lengths[candidate];
-                if gain > best.0 {
-                    best = (gain, Some(candidate));
-                }
-            }
-        }
-        best.1
-    }
-
-    /// Lets the best candidate join; `None` if there is none or as many terms as points.
-    fn step(&mut self) -> Option<Step> {
-        if self.terms.len() + 1 >= self.residual.len() {
-            return None;
-        }
-        let candidate = self.best_candidate()?;
-        let mut rest = self.columns.column(candidate).into_owned();
-        let mut coefficients = vec![0.0; self.orthonormal.len()];
-        for _ in 0..2 {
-            for (coefficient, known) in coefficients.iter_mut().zip(&self.orthonormal) {
-                let part = known.dot(&rest);
-                rest.axpy(-part, known, 1.0);
-                *coefficient += part;
-            }
-        }
-        let length = rest.norm();
-        rest /= length;
-        let part = rest.dot(&self.residual);
-        self.residual.axpy(-part, &rest, 1.0);
-        let projections = self.columns.tr_mul(&rest);
-        self.products.axpy(-part, &projections, 1.0);
-        for (left, projection) in self.lengths.iter_mut().zip(projections.iter()) {
-            *left -= projection * projection;
-        }
-        self.lengths[candidate] = 0.0;
-        self.orthonormal.push(rest);
-        self.terms.push(candidate);
-        Some(Step { candidate, coefficients, length, part })
-    }
 }
 
 #[cfg(test)]

@@ -15,11 +15,11 @@ pub(super) const EPSILON_FORWARD: f64 = 1e-5;
 pub(super) const EPSILON_BACKWARD: f64 = 1e-5;
 
 /// Where the paper's table stops; for invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000
-/// values, or 4000 values and derivatives.
+/// values, or 3000 values and derivatives.
 pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool) -> usize {
     match target {
         Target::Eigenvalues => 10_000,
-        _ if derivatives => (4_000 / (1 + inputs)).max(initial(target, inputs, derivatives)),
+        _ if derivatives => (3_000 / (1 + inputs)).max(initial(target, inputs, derivatives)),
         _ => 2_000,
     }
 }
