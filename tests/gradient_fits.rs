@@ -1,4 +1,4 @@
-//! Fits by values and derivatives: exact where there is something exact to find, and never worse for bad derivatives.
+//! Fits by values and derivatives: exact where there is something exact to find, and little worse for bad derivatives.
 
 use nalgebra::{DMatrix, DVector};
 use pcc::design::{NestedLatinHypercube, Samples};
@@ -73,7 +73,7 @@ fn coefficients(count: usize, seed: u64) -> Vec<f64> {
     (0..count).map(|_| 0.5 + stream.next_unit()).collect()
 }
 
-/// The fewest runs whose equations determine all terms, with their tables; also if any one of them is left out, or not.
+/// The fewest runs whose equations determine all terms, with their tables; with `spare`, also without any one of them.
 fn fewest_runs(inputs: usize, degree: u16, terms: &[MultiIndex], seed: u64, spare: bool) -> (Samples, BasisTables) {
     (1..)
         .map(|size| samples(inputs, size, seed))

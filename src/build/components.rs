@@ -11,7 +11,7 @@ use crate::polynomial::Recurrence;
 use crate::progress::{Interrupted, Observer};
 use crate::regression::{BasisTables, Response};
 use crate::spectrum::Output;
-use crate::study::{FitMethod, Study};
+use crate::study::{FitMethod, Smooth, Stepwise, Study};
 
 /// A fitted component and the name of the method that fitted it.
 pub(super) struct ComponentResult {
@@ -23,15 +23,16 @@ pub(super) struct ComponentResult {
 pub(super) struct ComponentFit<'a> {
     study: &'a Study,
     recurrences: Vec<Recurrence>,
-    candidates: MethodCandidates,
+    solver: Solver<'a>,
     memories: Vec<Memory>,
 }
 
-/// Candidate terms as the method takes them.
-enum MethodCandidates {
-    Shells(Vec<Vec<MultiIndex>>),
-    Norms(Candidates),
-    None,
+/// A method with its settings and the candidate terms it takes.
+enum Solver<'a> {
+    Stepwise(&'a Stepwise, Vec<Vec<MultiIndex>>),
+    Omp(&'a Smooth, Candidates),
+    MinimumNorm(&'a Smooth),
+    Auto(&'a Smooth, Candidates),
 }
 
 impl<'a> ComponentFit<'a> {
@@ -39,22 +40,20 @@ impl<'a> ComponentFit<'a> {
         let inputs = study.inputs.dimension();
         let degree = usize::from(study.fit.method.max_degree());
         let derivatives = if study.uses_derivatives() { inputs } else { 0 };
-        let candidates = match &study.fit.method {
+        let candidates =
+            |settings: &Smooth| Candidates::new(inputs, settings.max_degree, study.design.maximum, derivatives);
+        let solver = match &study.fit.method {
             FitMethod::Stepwise(settings) => {
                 let hyperbolic = Hyperbolic { inputs, q_norm: settings.q_norm };
-                MethodCandidates::Shells(hyperbolic.shells(settings.max_degree)?)
+                Solver::Stepwise(settings, hyperbolic.shells(settings.max_degree)?)
             }
-            FitMethod::Omp(settings) | FitMethod::Auto(settings) => MethodCandidates::Norms(Candidates::new(
-                inputs,
-                settings.max_degree,
-                study.design.maximum,
-                derivatives,
-            )?),
-            FitMethod::MinimumNorm(_) => MethodCandidates::None,
+            FitMethod::Omp(settings) => Solver::Omp(settings, candidates(settings)?),
+            FitMethod::MinimumNorm(settings) => Solver::MinimumNorm(settings),
+            FitMethod::Auto(settings) => Solver::Auto(settings, candidates(settings)?),
         };
         let recurrences =
             study.inputs.inputs().iter().map(|input| input.marginal.family().recurrence(degree)).collect();
-        Ok(Self { study, recurrences, candidates, memories: Vec::new() })
+        Ok(Self { study, recurrences, solver, memories: Vec::new() })
     }
 
     /// Starts anew, because the components are now those of `outputs`.
@@ -100,14 +99,12 @@ impl<'a> ComponentFit<'a> {
         can_grow: bool,
         observer: &dyn Observer,
     ) -> Result<Option<(ComponentResult, Memory)>, Interrupted> {
-        let (result, solver, memory) = match (&self.study.fit.method, &self.candidates) {
-            (FitMethod::Auto(settings), MethodCandidates::Norms(candidates)) => {
-                auto::fit(tables, response, candidates, settings, memory, observer)?
-            }
-            (FitMethod::Omp(settings), MethodCandidates::Norms(candidates)) => {
+        let (result, solver, memory) = match &self.solver {
+            Solver::Auto(settings, candidates) => auto::fit(tables, response, candidates, settings, memory, observer)?,
+            Solver::Omp(settings, candidates) => {
                 (omp::fit(tables, response, candidates, settings, observer)?, "omp", memory.clone())
             }
-            (FitMethod::Stepwise(settings), MethodCandidates::Shells(shells)) => {
+            Solver::Stepwise(settings, shells) => {
                 let result = match stepwise::fit(tables, response, shells, settings, observer)? {
                     Outcome::Fitted(fitted) => fitted,
                     Outcome::TooFewSamples { .. } if can_grow => return Ok(None),
@@ -117,9 +114,8 @@ impl<'a> ComponentFit<'a> {
                 };
                 (result, "stepwise", memory.clone())
             }
-            (method, _) => {
-                let settings = crate::study::Smooth { max_degree: method.max_degree(), s2_target: method.s2_target() };
-                let (result, learnt) = minimum_norm::fit(tables, response, &settings, &memory.learnt, observer)?;
+            Solver::MinimumNorm(settings) => {
+                let (result, learnt) = minimum_norm::fit(tables, response, settings, &memory.learnt, observer)?;
                 (result, "minimum-norm", Memory { learnt, ..*memory })
             }
         };

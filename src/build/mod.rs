@@ -75,11 +75,16 @@ impl BuildError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
-    build_of(study, study.model()?, observer)
+    build_with(study, study.model()?, observer)
 }
 
-/// The build with another model in place of the study's.
-fn build_of(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
+/// The build with a model of your own in place of the study's, whose inputs it takes. The hashes in the surrogate are still
+/// those of the study: `compare` and `certify` would run the study's model.
+///
+/// # Errors
+///
+/// As [`build`].
+pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
     let mut fit = ComponentFit::new(study)?;
     let mut evaluations = Evaluations::new(study, model)?;
     let mut levels = Vec::new();
@@ -193,11 +198,11 @@ mod tests {
     #[test]
     fn models_that_know_only_their_eigenvalues_are_fitted_by_values() {
         let model = || Box::new(EigenvaluesAlone(Clutch::new(&[], &["mu"]).unwrap()));
-        let found = build_of(&study(""), model(), &Silent).unwrap();
+        let found = build_with(&study(""), model(), &Silent).unwrap();
         let by_values = build(&study("derivatives = false\nproportion_tolerance = 2e-4"), &Silent).unwrap();
         assert_eq!((&found.expansions, found.training.counts), (&by_values.expansions, by_values.training.counts));
         assert_eq!(found.training.counts.gradients, 0);
-        assert_eq!(build_of(&study("derivatives = true"), model(), &Silent), Err(BuildError::NoDerivatives));
+        assert_eq!(build_with(&study("derivatives = true"), model(), &Silent), Err(BuildError::NoDerivatives));
     }
 
     /// Two oscillators that are always close, but never by much less than elsewhere, so they form no group. From the middle
@@ -228,7 +233,7 @@ mod tests {
 
     #[test]
     fn runs_whose_modes_cannot_be_separated_enter_with_their_values_alone() {
-        let surrogate = build_of(&study("s2_target = 0.9"), Box::new(Twins), &Silent).unwrap();
+        let surrogate = build_with(&study("s2_target = 0.9"), Box::new(Twins), &Silent).unwrap();
         let counts = surrogate.training.counts;
         assert_eq!((counts.values, counts.gradients), (16, 8));
     }

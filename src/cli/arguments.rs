@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// How likely is this machine to squeal, flutter or whirl, given what is not known about it?
 ///
-/// pcc runs a model of the machine at some hundred well-chosen points, fits sparse polynomial chaos expansions to smooth
+/// pcc runs a model of the machine at a few dozen well-chosen points, fits sparse polynomial chaos expansions to smooth
 /// functions of its eigenvalues, and writes them to a small file, the surrogate. Millions of samples of the surrogate then tell how
 /// often the machine is stable.
 #[derive(Debug, Parser)]

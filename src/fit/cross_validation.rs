@@ -5,7 +5,7 @@
 use super::pursuit_path::Path;
 use crate::index_set::MultiIndex;
 use crate::progress::{Interrupted, Observer};
-use crate::regression::{BasisTables, Equations, Response, equation_weights};
+use crate::regression::{BasisTables, Equations, Response, equation_weights, weigh_rows};
 use nalgebra::{DMatrix, DVector};
 
 /// Parts of the design that are left out in turn.
@@ -31,9 +31,7 @@ impl Problem {
         let equations = response.equations(tables.inputs());
         let weights = equation_weights(tables, &equations, weight);
         let mut columns = tables.stacked(set, &equations);
-        for mut column in columns.column_iter_mut() {
-            column.iter_mut().zip(&weights).for_each(|(entry, weight)| *entry *= weight);
-        }
+        weigh_rows(&mut columns, &weights);
         let targets = response.targets().zip(&weights).map(|(target, weight)| target * weight).collect();
         Self { equations, columns, targets }
     }

@@ -208,7 +208,7 @@ mod tests {
                 column.scale_mut(prior.variance(alpha).sqrt());
             }
             let expected = &columns * columns.transpose();
-            let found = prior.kernel(&tables, &equations, DEGREE).matrix;
+            let found = Kernel::new(&prior, &tables, &equations, DEGREE).matrix;
             assert!((&found - &expected).amax() < 1e-13 * expected.amax());
         }
     }
@@ -217,7 +217,7 @@ mod tests {
     fn gradient_is_that_of_differences() {
         let (tables, at) = (tables(), [0.1, 0.4, -0.5]);
         let equations = Equations::with_derivatives(6, 2, vec![0, 2, 3, 4]);
-        let kernel = |parameters: &[f64]| Prior::with(parameters).kernel(&tables, &equations, DEGREE);
+        let kernel = |parameters: &[f64]| Kernel::new(&Prior::with(parameters), &tables, &equations, DEGREE);
         let size = equations.rows();
         let by_matrix = DMatrix::from_fn(size, size, |a, b| ((a + b) as f64).sin() + (a * b) as f64 * 0.01);
         let function = |parameters: &[f64]| kernel(parameters).matrix.dot(&by_matrix);

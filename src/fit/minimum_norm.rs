@@ -1,7 +1,7 @@
 //! Weighted minimum-norm fit: more terms than runs, tamed by how coefficients of smooth functions fall.
 //!
 //! Among all expansions that meet the values, the fit takes the one with the smallest Σ c_α²/s_α, where s_α falls with
-//! the degree ([`Prior`]):
+//! the degree ([`super::Prior`]):
 //!
 //! c = S Ψᵀ (K + νI)⁻¹ y,   K = Ψ S Ψᵀ,   S = diag s_α,
 //!
@@ -14,12 +14,12 @@
 //!
 //! Δ_i = A_i⁻¹ c_i,
 //!
-//! so a design of N runs is judged without a single refit. Without derivatives a run is one value and Δ_i = c_i/A_ii. The
-//! r + 1 parameters of the prior are found by this error (`prior_search`); that makes it look up to twice smaller
-//! than it is. At the points that a grown design adds, the prior of the smaller one is judged blindly.
+//! so a design of N runs is judged without a single refit. Without derivatives a run is one value and Δ_i = c_i/A_ii. How the
+//! r + 1 parameters of the prior are found is said in `prior_search`; being tuned on the same runs makes this error look up to
+//! twice smaller than it is. At the points that a grown design adds, the prior of the smaller one is judged blindly.
 //!
 //! Derivatives are equations like values: K holds their covariances (Solak, Murray-Smith, Leithead, Leith and Rasmussen
-//! 2003). Where they are not as good as the values, ν of theirs grows by the inverse square of a weight.
+//! 2003, *Derivative observations in Gaussian process models of dynamic systems*). Where they are not as good as the values, ν of theirs grows by the inverse square of a weight.
 //!
 //! Finally terms too small to matter beside that error are dropped: the expansion is sparse.
 
@@ -124,18 +124,19 @@ pub fn fit(
     let (indices, mut coefficients, residuals, left_out) = solution.without_negligible_terms(problem.resolution);
     coefficients.iter_mut().for_each(|coefficient| *coefficient *= problem.scale);
     coefficients[0] += problem.mean;
-    let mean_square = |values: &[f64]| values.iter().map(|e| e * e).sum::<f64>() / values.len() as f64;
-    let s2 = 1.0 - mean_square(&left_out);
+    // Standardized values have unit variance.
+    let errors = ErrorMeasures::of_residuals(&residuals, Some(&left_out), 1.0);
+    let is_accurate = errors.s2.is_some_and(|s2| s2 >= settings.s2_target);
     let degree = indices.iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
     let fitted = Fitted {
         indices: IndexSet::from_unsorted(indices),
         coefficients,
-        errors: Some(ErrorMeasures { r2: 1.0 - mean_square(&residuals), s2: Some(s2), corrected_s2: None }),
+        errors: Some(errors),
         blind_residuals: learnt.blind.clone(),
         leave_one_out_residuals: Some(left_out.iter().map(|residual| residual * problem.scale).collect()),
         derivative_weight: response.gradients.map(|_| learnt.found.weight),
         degree,
-        stop: if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted },
+        stop: if is_accurate { Stop::Accurate } else { Stop::DesignExhausted },
     };
     Ok((fitted, learnt))
 }
@@ -174,7 +175,7 @@ impl<'a> Problem<'a> {
         Self { tables, equations, targets: DVector::from_vec(targets), mean, scale, resolution, degree }
     }
 
-    /// The prior with the smallest leave-one-out error found from the former one.
+    /// The prior found from the former one, unless that is good enough or there is too little new to search with.
     fn best_prior(&self, former: &Learnt, observer: &dyn Observer) -> Result<Found, Interrupted> {
         let Self { tables, equations, targets, resolution, degree, .. } = self;
         let search = Search { tables, equations, targets, resolution: *resolution, degree: *degree };

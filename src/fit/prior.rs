@@ -9,9 +9,7 @@
 //! K = Σ_α s_α ψ_α ψ_αᵀ, summed over *all* α up to a degree per input, a product of r small sums. With derivatives, ψ_α
 //! stands for its value at a point in some rows and for a derivative in others; then one of the sums has φ′ in place of φ.
 
-use super::kernel::Kernel;
 use crate::index_set::MultiIndex;
-use crate::regression::{BasisTables, Equations};
 
 /// Range of ln(−ln w): from w = 0.95, hardly any decay, to w = 1e-24, an input without influence.
 const DECAY: (f64, f64) = (-3.0, 4.0);
@@ -92,11 +90,6 @@ impl Prior {
 
     fn log_variance(&self, alpha: &[u16]) -> f64 {
         alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum()
-    }
-
-    /// K and its parts for some equations, with degrees up to `degree` in each input.
-    pub(super) fn kernel(&self, tables: &BasisTables, equations: &Equations, degree: u16) -> Kernel {
-        Kernel::new(self, tables, equations, degree)
     }
 
     /// The prior variances of degrees 1… of an input, up to where they are negligible or to `degree`, and their derivatives by

@@ -1,4 +1,4 @@
-//! The search for the prior that predicts left-out runs best.
+//! The search for the prior, and for the weight of derivatives.
 //!
 //! Without derivatives the parameters minimise the leave-one-out error itself. With derivatives a few runs give many
 //! equations, but few left-out values: there the likelihood of all equations leads the search, which needs a fifth of the
@@ -6,6 +6,7 @@
 //! judged by the values of left-out runs in either case: whether to start anew, and how much weight derivatives deserve.
 //! Priors of different weights are comparable then, because none was tuned on the error that is compared.
 
+use super::kernel::Kernel;
 use super::prior::Prior;
 use super::regularized::Regularized;
 use crate::numerics::minimize::{Evaluation, Limits, Start, minimize};
@@ -26,7 +27,7 @@ const EXPECTED_GAIN: f64 = 0.1;
 /// A smaller weight of the derivatives must lower it by this, ln 2: half of the error is no chance.
 const REWEIGHTING_GAIN: f64 = 0.7;
 
-/// The search for the prior ends when ½ ln of the mean square error falls by less, one per mille of the error.
+/// The search for the prior ends when its objective, per equation, falls by less: one per mille of an error.
 const LIMITS: Limits = Limits { iterations: 60, decrease: 1e-3 };
 
 /// So many times more values than parameters of the prior can judge the weight of derivatives.
@@ -41,7 +42,7 @@ pub(super) struct Found {
     pub prior: Prior,
     pub weight: f64,
     pub error: f64,
-    /// What the search learnt of the curvature of the error.
+    /// The inverse Hessian of the objective, as far as the search learnt it.
     pub curvature: Option<DMatrix<f64>>,
 }
 
@@ -67,7 +68,7 @@ fn handicap(weight: f64) -> f64 {
     if weight == WEIGHTS[0] { 0.0 } else { REWEIGHTING_GAIN }
 }
 
-/// The first `most` runs on which priors are found.
+/// On how many runs, the first ones, priors are found.
 pub(super) fn most_runs(equations: &Equations, inputs: usize) -> usize {
     let per_run = if equations.points_with_derivatives().is_empty() { 1 } else { 1 + inputs };
     (MOST_EQUATIONS / per_run).max(1)
@@ -193,7 +194,7 @@ impl Part<'_> {
     ///
     /// f = ½ ln(q/n) + ln det(K + νI)/2n,   df = Σ G_ab dK_ab,   G = (A − n c cᵀ/q)/2n.
     fn negative_log_likelihood(&self, prior: &Prior, weight: f64) -> Evaluation {
-        let kernel = prior.kernel(self.tables, &self.equations, self.degree);
+        let kernel = Kernel::new(prior, self.tables, &self.equations, self.degree);
         let regularized = Regularized::new(&kernel.matrix, &self.equations, weight)?;
         let count = self.equations.rows() as f64;
         let weighted = &regularized.inverse * &self.targets;
@@ -206,7 +207,7 @@ impl Part<'_> {
 
     /// ½ ln of the mean of Δ² at left-out values, no smaller than rounding.
     fn left_out_error(&self, prior: &Prior, weight: f64) -> Option<f64> {
-        let kernel = prior.kernel(self.tables, &self.equations, self.degree);
+        let kernel = Kernel::new(prior, self.tables, &self.equations, self.degree);
         let regularized = Regularized::new(&kernel.matrix, &self.equations, weight)?;
         let left_out = regularized.left_out(&self.equations, &(&regularized.inverse * &self.targets))?;
         Some(0.5 * ((left_out.norm_squared() + self.floor()) / left_out.len() as f64).ln())
@@ -216,7 +217,7 @@ impl Part<'_> {
     ///
     /// With c = Ay and Δ_i = c_i/A_ii: ΣΔdΔ = Σ G_ab dK_ab with G = −(A u) cᵀ + A diag(t) A, u_i = Δ_i/A_ii, t_i = Δ_i c_i/A_ii².
     fn leave_one_out_error(&self, prior: &Prior) -> Evaluation {
-        let kernel = prior.kernel(self.tables, &self.equations, self.degree);
+        let kernel = Kernel::new(prior, self.tables, &self.equations, self.degree);
         let regularized = Regularized::new(&kernel.matrix, &self.equations, 1.0)?;
         let inverse = &regularized.inverse;
         let weighted = inverse * &self.targets;
@@ -317,7 +318,7 @@ mod tests {
     fn left_out_runs_equal_explicit_refits() {
         for with_derivatives in [false, true] {
             let Problem { tables, equations, targets } = problem(7, with_derivatives);
-            let kernel = Prior::start(3).kernel(&tables, &equations, DEGREE).matrix;
+            let kernel = Kernel::new(&Prior::start(3), &tables, &equations, DEGREE).matrix;
             let regularized = Regularized::new(&kernel, &equations, 1.0).unwrap();
             let closed = regularized.left_out(&equations, &(&regularized.inverse * &targets)).unwrap();
             for i in 0..7 {

@@ -62,7 +62,7 @@ impl<'a> Path<'a> {
         best.1
     }
 
-    /// Lets the best candidate join; `None` if there is none or as many terms as points.
+    /// Lets the best candidate join; `None` if there is none or as many terms as equations.
     pub fn step(&mut self) -> Option<Step> {
         if self.terms.len() + 1 >= self.residual.len() {
             return None;

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 /// errors that matter.
 const NUGGET: f64 = 1e-11;
 
-/// Powers of ten by which ν may rise where rounding makes K indefinite.
+/// Sizes of ν that are tried, each ten times the one before, where rounding makes K indefinite.
 const NUGGETS: i32 = 5;
 
 /// A = (K + diag ν)⁻¹. Values and derivatives have a ν each, relative to the mean of their diagonal of K.
@@ -24,7 +24,8 @@ pub(super) struct Regularized {
 }
 
 impl Regularized {
-    /// The inverse with the smallest ν that allows it; ν of derivatives is larger by 1/`weight`².
+    /// The inverse with the smallest ν that allows it; ν of derivatives is larger by 1/`weight`²,
+    /// which must not be zero if there are any.
     pub fn new(kernel: &DMatrix<f64>, equations: &Equations, weight: f64) -> Option<Self> {
         let means = means(kernel.diagonal().as_slice(), equations);
         (0..NUGGETS).find_map(|k| {

@@ -140,7 +140,8 @@ fn search(
     Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)?))
 }
 
-/// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for.
+/// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for; derivatives have full weight,
+/// with which the search that gave the terms began.
 ///
 /// # Errors
 ///

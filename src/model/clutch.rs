@@ -133,12 +133,16 @@ fn matrices(values: &[f64; 16]) -> SecondOrder {
     let [mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, plate_mass, inertia_x, inertia_y, c_a, c_b, c_c, c_d, c_f] =
         *values;
     let levers = Levers::new(mu, (r_1 + r_2) / 2.0, l);
-    let springs = [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)];
     SecondOrder {
         mass: mass(inertia_x, inertia_y, plate_mass),
         damping: levers.assemble([c_a, c_b, c_c, c_d], c_f),
-        stiffness: levers.assemble(springs, k_f),
+        stiffness: levers.assemble(springs(k_p, gamma_1, gamma_2), k_f),
     }
+}
+
+/// k_A, k_B, k_C, k_D.
+fn springs(k_p: f64, gamma_1: f64, gamma_2: f64) -> [f64; 4] {
+    [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)]
 }
 
 /// The derivatives of M, C and K by the parameter number `by`.
@@ -150,13 +154,10 @@ fn derivative(values: &[f64; 16], by: usize) -> SecondOrder {
     let levers = Levers::new(mu, r, l);
     let zero = || DMatrix::zeros(6, 6);
     let none = SecondOrder { mass: zero(), damping: zero(), stiffness: zero() };
-    let by_levers = |slopes: Levers| {
-        let springs = [gamma_1 * k_p / 4.0, k_p / (4.0 * gamma_1), gamma_2 * k_p / 4.0, k_p / (4.0 * gamma_2)];
-        SecondOrder {
-            mass: zero(),
-            damping: slopes.assemble([c_a, c_b, c_c, c_d], c_f),
-            stiffness: slopes.assemble(springs, k_f),
-        }
+    let by_levers = |slopes: Levers| SecondOrder {
+        mass: zero(),
+        damping: slopes.assemble([c_a, c_b, c_c, c_d], c_f),
+        stiffness: slopes.assemble(springs(k_p, gamma_1, gamma_2), k_f),
     };
     let by_springs = |springs, bending| SecondOrder { stiffness: levers.assemble(springs, bending), ..none.clone() };
     let by_dampers = |dampers, bending| SecondOrder { damping: levers.assemble(dampers, bending), ..none.clone() };

@@ -3,7 +3,8 @@
 use super::ModelError;
 use nalgebra::{DMatrix, Dyn, LU};
 
-/// Mass, damping and stiffness matrices of M Ü + C U̇ + K U = 0, n × n each; or their derivatives by a parameter.
+/// Mass, damping and stiffness matrices of M Ü + C U̇ + K U = 0, n × n each, in units that fit together (kg, N·s/m and N/m for
+/// displacements in m); or their derivatives by a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SecondOrder {
     /// M. Need not be symmetric.
@@ -42,7 +43,7 @@ impl SecondOrder {
     /// # Ok::<(), pcc::model::ModelError>(())
     /// ```
     pub fn state_matrix(&self) -> Result<DMatrix<f64>, ModelError> {
-        self.solved(&self.factored()?).map(|(stiffness, damping)| assemble(&stiffness, &damping, 1.0))
+        self.divided_by(&self.factored()?).map(|(stiffness, damping)| assemble(&stiffness, &damping, 1.0))
     }
 
     /// A with its derivatives, given those of M, C and K by each uncertain input:
@@ -52,19 +53,23 @@ impl SecondOrder {
     /// # Errors
     ///
     /// [`ModelError::SingularMass`].
+    ///
+    /// # Panics
+    ///
+    /// If matrices differ in size.
     pub fn linearization(&self, derivatives: &[Self]) -> Result<Linearization, ModelError> {
         let mass = self.factored()?;
-        let (stiffness, damping) = self.solved(&mass)?;
+        let (stiffness, damping) = self.divided_by(&mass)?;
         let derivative = |by: &Self| {
             if is_zero(&by.mass) {
-                return by.solved(&mass).map(|(stiffness, damping)| assemble(&stiffness, &damping, 0.0));
+                return by.divided_by(&mass).map(|(stiffness, damping)| assemble(&stiffness, &damping, 0.0));
             }
             let moved = Self {
                 mass: by.mass.clone(),
                 damping: &by.damping - &by.mass * &damping,
                 stiffness: &by.stiffness - &by.mass * &stiffness,
             };
-            moved.solved(&mass).map(|(stiffness, damping)| assemble(&stiffness, &damping, 0.0))
+            moved.divided_by(&mass).map(|(stiffness, damping)| assemble(&stiffness, &damping, 0.0))
         };
         Ok(Linearization {
             state_matrix: assemble(&stiffness, &damping, 1.0),
@@ -77,8 +82,8 @@ impl SecondOrder {
         if mass.is_invertible() { Ok(mass) } else { Err(ModelError::SingularMass) }
     }
 
-    /// M⁻¹K and M⁻¹C.
-    fn solved(&self, mass: &LU<f64, Dyn, Dyn>) -> Result<(DMatrix<f64>, DMatrix<f64>), ModelError> {
+    /// M⁻¹K and M⁻¹C for the mass matrix of a system and the other matrices of this one; many derivatives are zero.
+    fn divided_by(&self, mass: &LU<f64, Dyn, Dyn>) -> Result<(DMatrix<f64>, DMatrix<f64>), ModelError> {
         let solve = |matrix: &DMatrix<f64>| match is_zero(matrix) {
             true => Ok(matrix.clone()),
             false => mass.solve(matrix).ok_or(ModelError::SingularMass),

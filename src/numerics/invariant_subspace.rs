@@ -25,8 +25,8 @@ pub struct Subspace {
     pub left: DMatrix<Complex<f64>>,
     /// T₁₁, upper triangular with the eigenvalues on its diagonal, in the order asked for.
     pub restricted: DMatrix<Complex<f64>>,
-    /// ‖P‖² ‖T‖/min|λ_i − μ_j| over eigenvalues λ of the group and μ of the rest, in Frobenius norms: by how much rounding
-    /// errors of A are amplified in P.
+    /// (1 + ‖R‖²) ‖T‖/min|λ_i − μ_j| over eigenvalues λ of the group and μ of the rest, in Frobenius norms and for the balanced
+    /// matrix: an estimate of how much rounding errors of A are amplified in P, where ‖P‖₂² ≤ 1 + ‖R‖².
     pub amplification: f64,
 }
 

@@ -79,10 +79,8 @@ impl<'a> ActiveBasis<'a> {
     /// Ψ with weighted rows.
     fn columns(&self, indices: &[MultiIndex]) -> DMatrix<f64> {
         let mut columns = self.tables.stacked(indices, &self.equations);
-        if self.rows() > self.samples() {
-            for mut column in columns.column_iter_mut() {
-                column.iter_mut().zip(&self.weights).for_each(|(entry, weight)| *entry *= weight);
-            }
+        if self.has_derivatives() {
+            weigh_rows(&mut columns, &self.weights);
         }
         columns
     }
@@ -221,7 +219,14 @@ impl<'a> ActiveBasis<'a> {
     }
 }
 
-/// One per value; `weight` in units of the linear term per derivative.
+/// Multiplies each row by its weight.
+pub fn weigh_rows(matrix: &mut DMatrix<f64>, weights: &[f64]) {
+    for mut column in matrix.column_iter_mut() {
+        column.iter_mut().zip(weights).for_each(|(entry, weight)| *entry *= weight);
+    }
+}
+
+/// What multiplies each equation: one for a value, `weight` in units of the linear term for a derivative.
 pub fn equation_weights(tables: &BasisTables, equations: &Equations, weight: f64) -> Vec<f64> {
     let points = equations.points_with_derivatives().len();
     let derivatives = (0..tables.inputs()).flat_map(|j| std::iter::repeat_n(weight * tables.slope_unit(j), points));

@@ -1,9 +1,7 @@
 //! The equations of a fit: what each model run answered, value and derivatives together.
 
+use super::errors::LEVERAGE_MARGIN;
 use nalgebra::{DMatrix, DMatrixView, SymmetricEigen};
-
-/// Smallest eigenvalue of I − H_i at which a run still is determined by the others.
-const LEVERAGE_MARGIN: f64 = 1e-10;
 
 /// Iterations for the eigenvalues of one block; two or three per row are usual.
 const MOST_SWEEPS: usize = 10_000;
@@ -17,7 +15,7 @@ pub struct Gradients {
     pub slopes: Vec<f64>,
 }
 
-/// Numbers of equations: a value at each of N points, then, input by input, derivatives at some of them.
+/// The numbering of equations: a value at each of N points, then, input by input, derivatives at some of them.
 ///
 /// A model run gives one *block* of equations, which are left out together.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,17 +76,17 @@ impl Equations {
     }
 }
 
-/// What a fit misses at one left-out run, by the others.
+/// What the fits without one run each say of that run.
 pub struct LeftOut {
-    /// Δ_i of every value.
+    /// The first entry of Δ_i, that of the value, for every run.
     pub residuals: Vec<f64>,
     /// h̃_i = 1 − 1/((I − H_i)⁻¹)₀₀: leverage of the value of run i when the run is left out as a whole; h_i if the run is one
     /// value.
     pub leverages: Vec<f64>,
 }
 
-/// Δ_i = (I − H_i)⁻¹ e_i for the residuals e_i of run i and its block H_i = Q_i Q_iᵀ of the hat matrix (Cook and Weisberg 1982,
-/// section 3.6): what the fit without run i misses there. `None` if a run is not determined by the others.
+/// Δ_i = (I − H_i)⁻¹ e_i for the residuals e_i of run i and its block H_i = Q_i Q_iᵀ of the hat matrix (Cook and Weisberg 1982, *Residuals and
+/// influence in regression*, section 3.6): what the fit without run i misses there. `None` if a run is not determined by the others.
 pub fn leave_runs_out(equations: &Equations, q: &DMatrixView<'_, f64>, residuals: &[f64]) -> Option<LeftOut> {
     let mut left_out = LeftOut { residuals: Vec::new(), leverages: Vec::new() };
     for i in 0..equations.samples() {

@@ -3,8 +3,8 @@
 use super::equations::{Equations, Gradients};
 use crate::statistics::Moments;
 
-/// Leverages closer to one than this leave a leave-one-out residual undetermined.
-const LEVERAGE_MARGIN: f64 = 1e-10;
+/// Leverages closer to one than this, or eigenvalues of the leverages of a run, leave a leave-one-out residual undetermined.
+pub(super) const LEVERAGE_MARGIN: f64 = 1e-10;
 
 /// Quality of a fit with N values and P terms. Errors are relative to the variance of the values with divisor N − 1.
 #[derive(Debug, Clone, Copy, PartialEq)]

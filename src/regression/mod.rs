@@ -5,7 +5,7 @@ mod equations;
 mod errors;
 mod tables;
 
-pub use basis::{ActiveBasis, equation_weights};
+pub use basis::{ActiveBasis, equation_weights, weigh_rows};
 pub use equations::{Equations, Gradients, LeftOut, leave_runs_out};
 pub use errors::{ErrorMeasures, Response, leave_one_out_residuals};
 pub use tables::BasisTables;

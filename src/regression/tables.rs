@@ -25,22 +25,13 @@ type Univariate = Vec<f64>;
 impl BasisTables {
     /// φ_k(ξ_ij) for all points i, inputs j and degrees k up to `degree`, with one recurrence per input.
     pub fn new(samples: &Samples, recurrences: &[Recurrence], degree: usize) -> Self {
-        let (count, degrees) = (samples.len(), degree + 1);
-        let mut values = vec![0.0; recurrences.len() * degrees * count];
-        let mut at_point = vec![0.0; degrees];
-        for (i, point) in samples.points().enumerate() {
-            for (j, (recurrence, &xi)) in recurrences.iter().zip(point).enumerate() {
-                recurrence.evaluate(xi, &mut at_point);
-                for (k, &value) in at_point.iter().enumerate() {
-                    values[(j * degrees + k) * count + i] = value;
-                }
-            }
-        }
+        let values =
+            tabulate(samples, recurrences, degree, |recurrence, xi, at_point| recurrence.evaluate(xi, at_point));
         let slope_units = recurrences.iter().map(|recurrence| recurrence.off_diagonal.first().copied().unwrap_or(1.0));
         Self {
-            samples: count,
+            samples: samples.len(),
             inputs: recurrences.len(),
-            degrees,
+            degrees: degree + 1,
             values,
             slopes: None,
             slope_units: slope_units.collect(),
@@ -49,20 +40,11 @@ impl BasisTables {
 
     /// The same with φ′_k(ξ_ij).
     pub fn with_slopes(samples: &Samples, recurrences: &[Recurrence], degree: usize) -> Self {
-        let mut tables = Self::new(samples, recurrences, degree);
-        let (count, degrees) = (samples.len(), degree + 1);
-        let mut slopes = vec![0.0; tables.values.len()];
-        let (mut values_at_point, mut at_point) = (vec![0.0; degrees], vec![0.0; degrees]);
-        for (i, point) in samples.points().enumerate() {
-            for (j, (recurrence, &xi)) in recurrences.iter().zip(point).enumerate() {
-                recurrence.evaluate_with_slopes(xi, &mut values_at_point, &mut at_point);
-                for (k, &slope) in at_point.iter().enumerate() {
-                    slopes[(j * degrees + k) * count + i] = slope;
-                }
-            }
-        }
-        tables.slopes = Some(slopes);
-        tables
+        let mut values = vec![0.0; degree + 1];
+        let slopes = tabulate(samples, recurrences, degree, |recurrence, xi, at_point| {
+            recurrence.evaluate_with_slopes(xi, &mut values, at_point);
+        });
+        Self { slopes: Some(slopes), ..Self::new(samples, recurrences, degree) }
     }
 
     /// Number of points N.
@@ -144,4 +126,25 @@ impl BasisTables {
             }
         }
     }
+}
+
+/// One number per input, degree and point, from the numbers of all degrees at one coordinate.
+fn tabulate(
+    samples: &Samples,
+    recurrences: &[Recurrence],
+    degree: usize,
+    mut evaluate: impl FnMut(&Recurrence, f64, &mut [f64]),
+) -> Univariate {
+    let (count, degrees) = (samples.len(), degree + 1);
+    let mut numbers = vec![0.0; recurrences.len() * degrees * count];
+    let mut at_point = vec![0.0; degrees];
+    for (i, point) in samples.points().enumerate() {
+        for (j, (recurrence, &xi)) in recurrences.iter().zip(point).enumerate() {
+            evaluate(recurrence, xi, &mut at_point);
+            for (k, &number) in at_point.iter().enumerate() {
+                numbers[(j * degrees + k) * count + i] = number;
+            }
+        }
+    }
+    numbers
 }

@@ -31,7 +31,7 @@ pub struct BuildReport {
     /// Every model run the build spent.
     pub direct_computations: u64,
     /// Runs whose derivatives entered the fit.
-    pub gradients: u64,
+    pub runs_with_derivatives: u64,
     /// Number of points of each design level.
     pub levels: Vec<u64>,
     /// Fit of every component.
@@ -112,12 +112,13 @@ impl FitReport {
         let uses_derivatives = surrogate.training.settings.iter().any(|setting| setting.key == "derivatives");
         if uses_derivatives && counts.gradients < counts.values {
             warnings.push(format!(
-                "in {} of {} model runs a group of modes was too close to other modes for derivatives; of these, values alone \
-                 entered the fit",
+                "in {} of {} model runs a group of modes was too close to other modes for derivatives; its values alone entered the \
+                 fit there",
                 counts.values - counts.gradients,
                 counts.values
             ));
         }
+        warnings.extend(Self::distrusted(surrogate));
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if spectrum.modes leaves out modes that can become unstable, \
@@ -130,6 +131,23 @@ impl FitReport {
             _ => {}
         }
         warnings
+    }
+
+    /// Components whose derivatives got no weight because they contradict the values.
+    fn distrusted(surrogate: &Surrogate) -> Option<String> {
+        let weights = surrogate.training.settings.iter().find(|setting| setting.key == "derivative_weights")?;
+        let SettingValue::Text(weights) = &weights.value else { return None };
+        // One word for all components, or a word each.
+        let words: Vec<&str> = weights.split(' ').collect();
+        let has_none = |id: usize| words.get(if words.len() == 1 { 0 } else { id }) == Some(&"0");
+        let names: Vec<String> =
+            surrogate.components().iter().filter(|c| has_none(c.id)).map(|component| component.name.clone()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "the derivatives of {} contradict the values and were not used; check the derivatives of the model",
+                names.join(", ")
+            )
+        })
     }
 
     /// A table of fits.
@@ -173,7 +191,7 @@ impl BuildReport {
             bytes,
             seed: surrogate.training.seed,
             direct_computations: surrogate.training.counts.direct_computations,
-            gradients: surrogate.training.counts.gradients,
+            runs_with_derivatives: surrogate.training.counts.gradients,
             levels: surrogate.training.levels.clone(),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
@@ -206,7 +224,7 @@ impl fmt::Display for BuildReport {
             "{}: {} model runs{} (design levels {}), {:.2} s, seed {}\n",
             self.study,
             count(self.direct_computations),
-            with_derivatives(self.gradients, self.direct_computations),
+            with_derivatives(self.runs_with_derivatives, self.direct_computations),
             level_list(&self.levels),
             self.elapsed_seconds,
             self.seed
@@ -231,6 +249,12 @@ mod tests {
         surrogate.training.counts.gradients -= 2;
         assert_eq!(with_derivatives(surrogate.training.counts.gradients, runs), ", 13 with derivatives");
         let said = "in 2 of 15 model runs a group of modes was too close to other modes for derivatives";
+        assert!(FitReport::warnings_of(&surrogate)[0].starts_with(said));
+
+        surrogate.training.counts.gradients += 2;
+        let weights = surrogate.training.settings.iter_mut().find(|setting| setting.key == "derivative_weights");
+        weights.unwrap().value = SettingValue::Text("1 0 1 1 1 1 0.1 0".to_owned());
+        let said = "the derivatives of im_1, im_c0_3_4 contradict the values";
         assert!(FitReport::warnings_of(&surrogate)[0].starts_with(said));
     }
 }

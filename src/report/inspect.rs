@@ -37,7 +37,7 @@ pub struct InspectReport {
     /// Every model run the build spent.
     pub direct_computations: u64,
     /// Runs whose derivatives entered the fit.
-    pub gradients: u64,
+    pub runs_with_derivatives: u64,
     /// Runs that failed.
     pub failed_runs: u64,
     /// Fitting method.
@@ -114,7 +114,7 @@ impl InspectReport {
             content_id: artifact.content_id.clone(),
             unknown_sections: artifact.unknown_sections.clone(),
             direct_computations: surrogate.training.counts.direct_computations,
-            gradients: surrogate.training.counts.gradients,
+            runs_with_derivatives: surrogate.training.counts.gradients,
             failed_runs: surrogate.training.counts.failed,
             method: surrogate.training.method.clone(),
             settings: surrogate.training.settings.iter().map(setting).collect(),
@@ -188,7 +188,7 @@ impl fmt::Display for InspectReport {
                 format!(
                     "{}{}, {} failed",
                     count(self.direct_computations),
-                    with_derivatives(self.gradients, self.direct_computations),
+                    with_derivatives(self.runs_with_derivatives, self.direct_computations),
                     self.failed_runs
                 ),
             ),

@@ -39,6 +39,7 @@ impl ReducedSystem {
         let lambdas = schur.eigenvalues();
         let mut positions: Vec<usize> = Vec::with_capacity(modes.len());
         for &mode in modes {
+            // The spectrum holds the very numbers of the Schur form.
             let wanted = spectrum.mode(mode).ok()?;
             let position = (0..lambdas.len()).find(|at| lambdas[*at] == wanted && !positions.contains(at))?;
             positions.push(position);
@@ -46,7 +47,7 @@ impl ReducedSystem {
         let subspace = schur.subspace(&positions);
         subspace.is_separated().then(|| Self {
             modes: modes.to_vec(),
-            derivatives: between(&subspace, derivatives),
+            derivatives: reduced_derivatives(&subspace, derivatives),
             state_matrix: subspace.restricted,
         })
     }
@@ -75,7 +76,7 @@ impl Output {
 }
 
 /// W D_j V for real D_j.
-fn between(subspace: &Subspace, derivatives: &[DMatrix<f64>]) -> Vec<DMatrix<Complex<f64>>> {
+fn reduced_derivatives(subspace: &Subspace, derivatives: &[DMatrix<f64>]) -> Vec<DMatrix<Complex<f64>>> {
     let (size, modes) = subspace.right.shape();
     // Real and imaginary parts side by side: real products are cheaper.
     let right = DMatrix::from_fn(size, 2 * modes, |i, k| {

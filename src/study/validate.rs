@@ -256,7 +256,6 @@ impl Lines<'_> {
             Some(derivatives) => self.derivatives(derivatives, target)?,
             None => Derivatives::Auto,
         };
-        let default_tolerance = defaults::proportion_tolerance(derivatives.are_used(target, model));
         let share = |value: f64| value > 0.0 && value <= 1.0;
         let in_share = "a number above 0 and at most 1";
         let max_degree = match raw.max_degree {
@@ -264,18 +263,18 @@ impl Lines<'_> {
             None => defaults::MAX_DEGREE,
         };
         let s2_target = self.number("fit.s2_target", raw.s2_target, defaults::S2_TARGET, in_share, share)?;
+        let method = match &raw.method {
+            Some(word) => self.word("fit.method", word, &METHODS)?,
+            None if target == Target::Invariants => Some(FitMethod::Auto as SmoothMethod),
+            None => None,
+        };
+        let default_tolerance = defaults::proportion_tolerance(derivatives.are_used(target, model), method.is_none());
         let proportion_tolerance = match raw.proportion_tolerance {
             Some(value) => {
                 let (resolved, expected) = (|value| (1e-5..=1.0).contains(&value), "a number from 1e-5 to 1");
                 Some(self.number("fit.proportion_tolerance", Some(value), 1.0, expected, resolved)?)
             }
             None => (target == Target::Invariants).then_some(default_tolerance),
-        };
-        let smooth = Smooth { max_degree, s2_target };
-        let method = match &raw.method {
-            Some(word) => self.word("fit.method", word, &METHODS)?,
-            None if target == Target::Invariants => Some(FitMethod::Auto as SmoothMethod),
-            None => None,
         };
         let (norm, forward, backward) = (raw.q_norm, raw.epsilon_forward, raw.epsilon_backward);
         let method = match method {
@@ -287,7 +286,7 @@ impl Lines<'_> {
                         return Err(StudyError::KeyOfStepwise { place: self.place(key, &value) });
                     }
                 }
-                smooth_method(smooth)
+                smooth_method(Smooth { max_degree, s2_target })
             }
         };
         Ok(FitSettings { method, proportion_tolerance, derivatives })
