@@ -236,6 +236,9 @@ fn noise_in_the_derivatives_lowers_their_weight_and_degrades_the_fit_gracefully(
                 found >= 0.5 * before && found <= 2.0 * alone,
                 "{name}, noise {noise}: {found:e} against {alone:e}"
             );
+            if noise == 0.01 {
+                assert!(weight < 1.0 && found < alone, "{name}: weight {weight}, {found:e} against {alone:e}");
+            }
             (before, weight_before) = (found, weight);
         }
         let exact = fit(&tables, clean.response());

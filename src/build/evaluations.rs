@@ -87,7 +87,8 @@ impl<'a> Evaluations<'a> {
     }
 
     /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come without. Runs in
-    /// which an output's modes cannot be separated from the rest of the spectrum have none for its components.
+    /// which an output's modes, or all modes of the study together, cannot be separated from the rest of the spectrum have none
+    /// for its components.
     pub fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
         if !self.runner.has_derivatives() {
             return None;

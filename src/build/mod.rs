@@ -107,7 +107,7 @@ pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer)
         let resolutions = evaluations.resolutions(&outputs);
         let responses: Vec<Response<'_>> = (0..values.len())
             .map(|id| {
-                let gradients = gradients.as_ref().map(|all| &all[id]);
+                let gradients = gradients.as_ref().map(|all| &all[id]).filter(|one| !one.points.is_empty());
                 Response { gradients, ..Response::of(&values[id], resolutions[id]) }
             })
             .collect();

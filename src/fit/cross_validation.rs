@@ -1,22 +1,21 @@
-//! How many terms of a path a design can carry: ten-fold cross-validation of the whole path, selection included.
+//! How many terms of a path a design can carry: cross-validation of the whole path, selection included.
 //!
 //! With derivatives a fold leaves out whole runs, and the error is that of their values.
 
 use super::pursuit_path::Path;
 use crate::index_set::MultiIndex;
+use crate::numerics::qr::ColumnQr;
 use crate::progress::{Interrupted, Observer};
 use crate::regression::{BasisTables, Equations, Response, equation_weights, weigh_rows};
 use nalgebra::{DMatrix, DVector};
 
-/// Parts of the design that are left out in turn.
+/// Parts of the design that are left out in turn; with derivatives, which make paths long, fewer.
 const FOLDS: usize = 10;
+const FOLDS_WITH_DERIVATIVES: usize = 5;
 
 /// A path ends so many terms after its best one, as a share of that, and at least.
 const STALL_SHARE: f64 = 0.3;
 const LEAST_STALL: usize = 6;
-
-/// So many more equations than terms must hold for that to be no chance.
-const EXACT_SURPLUS: usize = 1;
 
 /// Weighted equations on a set of candidates.
 pub(super) struct Problem {
@@ -36,17 +35,16 @@ impl Problem {
         Self { equations, columns, targets }
     }
 
-    /// The terms of a path that meets all equations, values and derivatives, to a mean square residual of `exact` with fewer
-    /// terms than there are equations.
-    pub fn exact_path(&self, exact: f64) -> Option<Vec<usize>> {
-        let (rows, samples) = (self.equations.rows(), self.equations.samples());
-        let mut path = Path::new(&self.columns, &self.targets);
-        while rows > samples && path.terms.len() + EXACT_SURPLUS < rows && path.step().is_some() {
-            if path.residual.norm_squared() <= exact * rows as f64 {
-                return Some(path.terms);
-            }
+    /// Whether all terms of the set together, none of them chosen, meet all equations to a mean square residual of `exact`
+    /// although there are fewer terms than equations.
+    pub fn is_met_by_all_terms(&self, exact: f64) -> bool {
+        let (rows, terms) = self.columns.shape();
+        if rows == self.equations.samples() || terms >= rows {
+            return false;
         }
-        None
+        let mut qr = ColumnQr::new(rows);
+        qr.append(&self.columns);
+        qr.columns() == terms && qr.residual(&self.targets).norm_squared() <= exact * rows as f64
     }
 }
 
@@ -63,11 +61,12 @@ pub(super) struct CrossValidation {
 impl CrossValidation {
     pub fn new(problem: &Problem, observer: &dyn Observer) -> Result<Self, Interrupted> {
         let samples = problem.equations.samples();
-        let folds = FOLDS.min(samples);
+        let has_derivatives = problem.equations.rows() > samples;
+        let folds = if has_derivatives { FOLDS_WITH_DERIVATIVES } else { FOLDS }.min(samples);
         let mut by_fold = Vec::with_capacity(folds);
         for fold in 0..folds {
             observer.check()?;
-            by_fold.push(left_out(problem, fold, folds));
+            by_fold.push(left_out(problem, fold, folds, observer)?);
         }
         let longest = by_fold.iter().map(Vec::len).min().unwrap_or(0);
         let error = |terms: usize| -> f64 {
@@ -87,7 +86,12 @@ impl CrossValidation {
 }
 
 /// The residuals at the values of one fold after each term of the path on the other runs.
-fn left_out(problem: &Problem, fold: usize, folds: usize) -> Vec<DVector<f64>> {
+fn left_out(
+    problem: &Problem,
+    fold: usize,
+    folds: usize,
+    observer: &dyn Observer,
+) -> Result<Vec<DVector<f64>>, Interrupted> {
     let Problem { equations, columns, targets } = problem;
     let (inside, others): (Vec<usize>, Vec<usize>) = (0..equations.samples()).partition(|i| i % folds == fold);
     let mut outside: Vec<usize> = others.iter().flat_map(|&i| equations.block(i)).collect();
@@ -100,6 +104,7 @@ fn left_out(problem: &Problem, fold: usize, folds: usize) -> Vec<DVector<f64>> {
     let mut history: Vec<DVector<f64>> = Vec::new();
     let mut best = (0, f64::INFINITY);
     while history.len() < best.0 + LEAST_STALL.max((STALL_SHARE * best.0 as f64) as usize) {
+        observer.check()?;
         let Some(step) = path.step() else { break };
         // The new orthonormal column, continued to the points of the fold.
         let mut column = unseen.column(step.candidate).into_owned();
@@ -114,5 +119,5 @@ fn left_out(problem: &Problem, fold: usize, folds: usize) -> Vec<DVector<f64>> {
             best = (history.len(), residual.norm_squared());
         }
     }
-    history
+    Ok(history)
 }

@@ -37,7 +37,7 @@ use nalgebra::{DMatrix, DVector};
 const CANDIDATES_PER_EQUATION: usize = 2;
 
 /// Dropped terms together are below this share of the leave-one-out error.
-const DROPPED_SHARE: f64 = 0.1;
+const DROPPED_SHARE: f64 = 0.3;
 
 /// A prior with a smaller leave-one-out error, relative to the standard deviation, is kept: a better one would change
 /// nothing that matters.
@@ -227,9 +227,8 @@ impl<'a> Problem<'a> {
         let equations = if weight > 0.0 { &self.equations } else { &alone };
         let targets = self.targets.rows(0, equations.rows());
         let indices = prior.likeliest(CANDIDATES_PER_EQUATION * equations.rows(), self.degree);
-        let columns = self.tables.stacked(&indices, equations);
         let deviations: Vec<f64> = indices.iter().map(|alpha| prior.variance(alpha).sqrt()).collect();
-        let mut weighted = columns.clone();
+        let mut weighted = self.tables.stacked(&indices, equations);
         for (mut column, &deviation) in weighted.column_iter_mut().zip(&deviations) {
             column.scale_mut(deviation);
         }
@@ -245,7 +244,7 @@ impl<'a> Problem<'a> {
         }
         let left_out = regularized.left_out(equations, &t.component_div(&roots))?;
         let coefficients = DVector::from_iterator(indices.len(), x.iter().zip(&deviations).map(|(x, s)| x * s));
-        let columns = columns.rows(0, samples).into_owned();
+        let columns = self.tables.columns(&indices);
         let residuals = self.targets.rows(0, samples) - &columns * &coefficients;
         let is_finite = coefficients.iter().chain(left_out.iter()).all(|value| value.is_finite());
         is_finite.then_some(Solution { indices, columns, coefficients, residuals, left_out })

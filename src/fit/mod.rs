@@ -57,7 +57,8 @@ pub struct Fitted {
     pub leave_one_out_residuals: Option<Vec<f64>>,
     /// The same at points on which the fit was not tuned; `None` if it was tuned on all.
     pub blind_residuals: Option<BlindResiduals>,
-    /// Weight of derivatives beside values, from 0, not used, to 1, trusted as much; `None` if there were none.
+    /// Weight of derivatives beside values, from 0, not used, to 1, trusted as much; `None` if there were none. Least squares
+    /// multiplies their equations by it; in the minimum-norm fit their ν is larger by its inverse square.
     pub derivative_weight: Option<f64>,
     /// Degree p at which a stepwise search ended; the highest total degree of the terms for the other methods.
     pub degree: u16,

@@ -10,8 +10,8 @@
 //! while the true error rises again.
 //!
 //! With derivatives a fold leaves out whole runs, and the error is that of values. Their weight is chosen by it, too. As each
-//! run gives several equations, few runs can determine an expansion exactly and yet be too few to leave one out; so a path
-//! that meets all equations with fewer terms than there are equations is taken at once.
+//! run gives several equations, few runs can determine an expansion exactly and yet be too few to leave one out; so a whole
+//! set of candidates that meets all equations with fewer terms than there are equations is taken at once.
 //!
 //! Candidate sets {‖α‖_q ≤ p} grow degree by degree for each norm q until degrees bring nothing more or candidates
 //! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
@@ -33,8 +33,8 @@ const PATIENCE: usize = 1;
 /// Candidates per run beyond which a set is not tried: among too many, some fit by chance.
 const CANDIDATES_PER_RUN: usize = 5;
 
-/// The same per derivative: beside values they bring little that helps to choose.
-const CANDIDATES_PER_DERIVATIVE: usize = 1;
+/// Derivatives that allow one more: beside values they bring little that helps to choose.
+const DERIVATIVES_PER_CANDIDATE: usize = 4;
 
 /// So many candidates are always tried: they cost nothing.
 const FEW_CANDIDATES: usize = 100;
@@ -80,7 +80,7 @@ impl Candidates {
 
 fn most_candidates(runs: usize, derivatives: usize) -> usize {
     let carried = CANDIDATES_PER_RUN.saturating_mul(runs);
-    FEW_CANDIDATES.max(carried.saturating_add(CANDIDATES_PER_DERIVATIVE.saturating_mul(derivatives)))
+    FEW_CANDIDATES.max(carried.saturating_add(derivatives / DERIVATIVES_PER_CANDIDATE))
 }
 
 /// Fits one component: `response.values[i]` belongs to point i of `tables`.
@@ -124,7 +124,9 @@ pub fn fit(
     let search = PathSearch { tables, response, candidates, variance, observer };
     let full_weight = if response.gradients.is_some() { WEIGHTS[0] } else { 0.0 };
     let Some(mut best) = (match search.best(full_weight)? {
-        Best::Exact { set, terms } => {
+        Best::Exact(set) => {
+            // Nothing was chosen, so the closed-form errors are honest.
+            let terms: Vec<usize> = (0..set.len()).collect();
             let fitted = chosen(tables, response, variance, &set, &terms, full_weight, observer)?;
             let s2 = fitted.errors.and_then(|errors| errors.s2);
             let is_accurate = s2.is_some_and(|s2| s2 >= settings.s2_target);
@@ -165,8 +167,8 @@ struct Choice {
 
 /// What a search over sets of candidates found.
 enum Best {
-    /// Terms that meet every equation.
-    Exact { set: Vec<MultiIndex>, terms: Vec<usize> },
+    /// A set whose terms all together meet every equation.
+    Exact(Vec<MultiIndex>),
     /// The set with the smallest cross-validated error, if any could be judged.
     Validated(Option<Choice>),
 }
@@ -195,8 +197,8 @@ impl PathSearch<'_> {
                 if set.len() > most_candidates(response.values.len(), derivatives) || stalled > PATIENCE {
                     break;
                 }
-                if let Some(terms) = problem.exact_path(exact) {
-                    return Ok(Best::Exact { set, terms });
+                if problem.is_met_by_all_terms(exact) {
+                    return Ok(Best::Exact(set));
                 }
                 let validation = CrossValidation::new(&problem, observer)?;
                 stalled = if validation.error < best_of_norm { 0 } else { stalled + 1 };

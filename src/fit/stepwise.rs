@@ -91,13 +91,16 @@ pub fn fit(
     if response.gradients.is_none() {
         return search(tables, response, variance, 0.0, shells, settings, observer);
     }
-    let mut best: Option<(f64, Outcome)> = None;
+    let (mut best, mut wants_points): (Option<(f64, Outcome)>, bool) = (None, false);
     for weight in WEIGHTS {
         let outcome = search(tables, response.with_weight(weight), variance, weight, shells, settings, observer)?;
         let s2 = match &outcome {
+            // A design that is too small for full weight is not made large enough by a poor fit with less.
+            Outcome::Fitted(fitted) if best.is_some() && wants_points && fitted.stop != Stop::Accurate => continue,
             Outcome::Fitted(fitted) => fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY),
             Outcome::TooFewSamples { .. } => f64::NEG_INFINITY,
         };
+        wants_points |= best.is_none() && matches!(outcome, Outcome::TooFewSamples { .. });
         if best.as_ref().is_none_or(|(known, _)| s2 > *known) {
             best = Some((s2, weighed(outcome, weight)));
         }

@@ -16,6 +16,9 @@ use nalgebra::{Complex, DMatrix, DVector, Vector2};
 /// cannot be separated.
 const LARGEST_ERROR: f64 = 1e-8;
 
+/// Right-hand sides by which the separation is estimated.
+const TRIALS: usize = 3;
+
 /// Bases of a right and a left invariant subspace, biorthonormal: P = `right` · `left`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subspace {
@@ -25,8 +28,9 @@ pub struct Subspace {
     pub left: DMatrix<Complex<f64>>,
     /// T₁₁, upper triangular with the eigenvalues on its diagonal, in the order asked for.
     pub restricted: DMatrix<Complex<f64>>,
-    /// (1 + ‖R‖²) ‖T‖/min|λ_i − μ_j| over eigenvalues λ of the group and μ of the rest, in Frobenius norms and for the balanced
-    /// matrix: an estimate of how much rounding errors of A are amplified in P, where ‖P‖₂² ≤ 1 + ‖R‖².
+    /// (1 + ‖R‖²) ‖T‖/sep(T₁₁, T₂₂) in Frobenius norms and for the balanced matrix: an estimate of how much rounding errors of A
+    /// are amplified in P, where ‖P‖₂² ≤ 1 + ‖R‖². The separation is the smallest ‖T₁₁X − XT₂₂‖/‖X‖: the distance of the
+    /// eigenvalues, or much less where those of the group coalesce.
     pub amplification: f64,
 }
 
@@ -53,11 +57,8 @@ impl Subspace {
         let mut left = DMatrix::zeros(group, size);
         left.view_mut((0, 0), (group, group)).fill_with_identity();
         left.view_mut((0, group), (group, rest)).copy_from(&coupling);
-        let mut gap = f64::INFINITY;
-        for lambda in restricted.diagonal().iter() {
-            gap = others.diagonal().iter().fold(gap, |gap, other| gap.min((lambda - other).norm()));
-        }
-        let amplification = (1.0 + coupling.norm_squared()) * triangular.norm() / gap;
+        let amplification =
+            (1.0 + coupling.norm_squared()) * triangular.norm() * inverse_separation(&restricted, &others);
         Self {
             right: basis.columns(0, group).into_owned(),
             left: left * basis.adjoint(),
@@ -147,6 +148,22 @@ fn lead(
     triangular[(k + 1, k)] = Complex::new(0.0, 0.0);
 }
 
+/// An estimate of 1/sep(A, B), the norm of the solution operator of A X − X B = C, by solving for right-hand sides that have no
+/// structure: each has about 1/√dimension of its length in the worst direction.
+fn inverse_separation(a: &DMatrix<Complex<f64>>, b: &DMatrix<Complex<f64>>) -> f64 {
+    let (rows, columns) = (a.nrows(), b.nrows());
+    let trial = |number: usize| {
+        let phase = |i: usize, j: usize| (1 + i * columns + j) as f64 * (number as f64 + 2.0).sqrt();
+        let unstructured = DMatrix::from_fn(rows, columns, |i, j| Complex::new(phase(i, j).sin(), phase(i, j).cos()));
+        let length = unstructured.norm();
+        sylvester(a, b, unstructured).norm() / length
+    };
+    let largest = (0..TRIALS)
+        .map(trial)
+        .fold(0.0, |largest: f64, ratio| if ratio >= largest { ratio } else { largest.max(ratio) });
+    if rows * columns == 0 { 0.0 } else { largest * ((rows * columns) as f64).sqrt() }
+}
+
 /// R of A R − R B = C for upper triangular A and B, column by column; not finite if they share an eigenvalue.
 fn sylvester(
     a: &DMatrix<Complex<f64>>,
@@ -224,6 +241,19 @@ mod tests {
         assert!(distance(0.1).is_separated());
         assert!(!distance(1e-6).is_separated());
         assert!(!distance(0.0).is_separated());
+    }
+
+    /// A coalesced pair is closer to a third eigenvalue than the distance says: by its square.
+    #[test]
+    fn groups_of_coalescing_eigenvalues_need_more_distance() {
+        let at = |gap: f64| {
+            let triangular = complex(&nalgebra::dmatrix![1.0, 1.0, 0.3; 0.0, 1.0, 0.5; 0.0, 0.0, 1.0 + gap]);
+            Subspace::of_triangular(triangular, &[0, 1])
+        };
+        assert!(at(0.1).is_separated());
+        assert!(!at(1e-4).is_separated());
+        // sep ≈ gap², and ‖P‖² grows, too.
+        assert!(at(1e-2).amplification > 1e4);
     }
 
     #[test]

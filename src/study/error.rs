@@ -110,6 +110,23 @@ pub enum StudyError {
         /// Largest design.
         maximum: usize,
     },
+    /// The design with derivatives gives more equations than a fit can hold in memory.
+    #[error(
+        "design.maximum ({maximum}) with derivatives by {inputs} inputs gives {equations} equations, more than {most}; lower it \
+         to {fitting} or set fit.derivatives = false"
+    )]
+    TooManyEquations {
+        /// Number of inputs.
+        inputs: usize,
+        /// Largest design.
+        maximum: usize,
+        /// Values and derivatives.
+        equations: usize,
+        /// The most.
+        most: usize,
+        /// The largest design that fits.
+        fitting: usize,
+    },
     /// The inputs do not form a space.
     #[error("{place}: {cause}")]
     Inputs {

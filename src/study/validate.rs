@@ -34,6 +34,9 @@ const METHODS: [(&str, Option<SmoothMethod>); 4] = [
 
 const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
+/// Values and derivatives that a minimum-norm fit may take: matrices of half a gigabyte.
+const MOST_EQUATIONS: usize = 8_000;
+
 /// Univariate polynomial values that a design may need: two gigabytes.
 const LARGEST_TABLES: usize = 250_000_000;
 
@@ -62,6 +65,12 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
     if numbers > LARGEST_TABLES {
         return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
+    }
+    let equations = design.maximum.saturating_mul(1 + dimension);
+    let is_stepwise = matches!(fit.method, FitMethod::Stepwise(_));
+    if derivatives && !is_stepwise && equations > MOST_EQUATIONS {
+        let (inputs, maximum, most) = (dimension, design.maximum, MOST_EQUATIONS);
+        return Err(StudyError::TooManyEquations { inputs, maximum, equations, most, fitting: most / (1 + inputs) });
     }
     Ok(Study { name, seed, model, inputs, spectrum, design, fit })
 }
