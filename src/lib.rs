@@ -1,9 +1,10 @@
 //! Surrogate models for the stability of vibrating systems with uncertain parameters.
 //!
 //! A *study* names a model, its uncertain inputs and a method ([`study`]). [`build`] runs the model at the points of a
-//! nested Latin hypercube ([`design`]) and fits a sparse polynomial chaos expansion to each component: real and imaginary
-//! parts of eigenvalues, or of symmetric functions of those that come close, by values and derivatives ([`fit`]). The result is a [`surrogate`], kept in a small versioned file ([`artifact`]). [`eval`] samples it millions
-//! of times without the model; [`mod@reference`] samples the model itself, for comparison.
+//! nested Latin hypercube ([`design`]) and fits a sparse polynomial chaos expansion to each component: real and
+//! imaginary parts of eigenvalues, or of symmetric functions of those that come close, by values and derivatives
+//! ([`fit`]). The result is a [`surrogate`], kept in a small versioned file ([`artifact`]). [`eval`] samples it
+//! millions of times without the model; [`mod@reference`] samples the model itself, for comparison.
 //!
 //! ```
 //! use pcc::{artifact, build::build, eval::monte_carlo, progress::Silent, study::Study};

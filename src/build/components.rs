@@ -62,8 +62,9 @@ impl<'a> ComponentFit<'a> {
         self.memories = vec![Memory::new(self.study.inputs.dimension()); count];
     }
 
-    /// Fits `responses`, one per component, to what the model answered at the points of `samples`. `None` if the method asks for a larger
-    /// design, as long as the design `can_grow`; else each component settles for what the design carries.
+    /// Fits `responses`, one per component, to what the model answered at the points of `samples`. `None` if the method
+    /// asks for a larger design, as long as the design `can_grow`; else each component settles for what the design
+    /// carries.
     pub fn fit(
         &mut self,
         samples: &Samples,

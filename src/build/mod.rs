@@ -57,9 +57,10 @@ impl BuildError {
 
 /// Builds the surrogate of a study on the current rayon thread pool: the same bits for any number of threads.
 ///
-/// Derivatives enter the fit beside the values if the study wants them and the model has them. All components share one nested design. Level by level it grows by one step until every component is fitted well
-/// enough and, if the study asks for it, the estimated error of the stability proportion is small enough, or has not fallen
-/// while the design grew by four levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
+/// Derivatives enter the fit beside the values if the study wants them and the model has them. All components share one
+/// nested design. Level by level it grows by one step until every component is fitted well enough and, if the study
+/// asks for it, the estimated error of the stability proportion is small enough, or has not fallen while the design
+/// grew by four levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
 ///
 /// # Errors
 ///
