@@ -14,11 +14,8 @@ use crate::progress::{Interrupted, Observer};
 use crate::regression::{BasisTables, Equations};
 use nalgebra::{DMatrix, DVector};
 
-/// The prior is found on so many values at most, those of the first points: each step of the search costs the cube of their
-/// number.
-const MOST_VALUES: usize = 300;
-
-/// The same for values and derivatives, which take fewer steps; but so many runs per parameter of the prior at least.
+/// The prior is found on so many equations at most, those of the first points: each step of the search costs the cube of
+/// their number. With derivatives they are those of so many runs per parameter of the prior at least.
 const MOST_EQUATIONS: usize = 450;
 const RUNS_PER_PARAMETER: usize = 3;
 
@@ -75,7 +72,7 @@ fn handicap(weight: f64) -> f64 {
 /// On how many runs, the first ones, priors are found.
 pub(super) fn most_runs(equations: &Equations, inputs: usize) -> usize {
     if equations.points_with_derivatives().is_empty() {
-        MOST_VALUES
+        MOST_EQUATIONS
     } else {
         (MOST_EQUATIONS / (1 + inputs)).max(RUNS_PER_PARAMETER * (1 + inputs))
     }
