@@ -206,6 +206,32 @@ mod tests {
         assert_eq!(build_with(&study("derivatives = true"), model(), &Silent), Err(BuildError::NoDerivatives));
     }
 
+    /// The clutch with one derivative too few.
+    struct Forgetful(Clutch);
+
+    impl Model for Forgetful {
+        fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+            self.0.eigenvalues(point)
+        }
+
+        fn has_derivatives(&self) -> bool {
+            true
+        }
+
+        fn linearization(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
+            let complete = self.0.linearization(point)?;
+            Ok(complete.map(|complete| Linearization { derivatives: Vec::new(), ..complete }))
+        }
+    }
+
+    #[test]
+    fn missing_derivatives_are_an_error() {
+        let model = Box::new(Forgetful(Clutch::new(&[], &["mu"]).unwrap()));
+        let error = build_with(&study(""), model, &Silent).unwrap_err();
+        let cause = ModelError::Derivatives { found: 0, expected: 1 };
+        assert!(matches!(error, BuildError::Run(RunError::Model { cause: found, .. }) if found == cause));
+    }
+
     /// Two oscillators that are always close, but never by much less than elsewhere, so they form no group. From the middle
     /// of the input on one drives the other, and their eigenvectors almost coincide.
     struct Twins;

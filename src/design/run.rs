@@ -129,6 +129,13 @@ impl<'a> Runner<'a> {
             let eigenvalues = self.model.eigenvalues(point).map_err(failed)?;
             return Ok((Spectrum::new(&eigenvalues).map_err(unusable)?, None));
         };
+        let (found, expected) = (
+            derivatives.iter().filter(|derivative| derivative.shape() == state_matrix.shape()).count(),
+            inputs.dimension(),
+        );
+        if (found, derivatives.len()) != (expected, expected) {
+            return Err(failed(ModelError::Derivatives { found, expected }));
+        }
         let schur = SchurForm::new(state_matrix).map_err(|cause| failed(cause.into()))?;
         let spectrum = Spectrum::new(&schur.eigenvalues()).map_err(unusable)?;
         // A missing mode is reported once the number of modes is known to be the same everywhere.

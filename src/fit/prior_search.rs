@@ -138,18 +138,19 @@ impl Search<'_> {
     fn descend(&self, from: &Found, observer: &dyn Observer) -> Result<Found, Interrupted> {
         let weight = from.weight;
         let start = Start { point: from.prior.parameters().to_vec(), inverse_hessian: from.curvature.clone() };
+        let part = self.part(weight);
         let lowest = minimize(&start, &Prior::bounds(from.prior.inputs()), LIMITS, |parameters| {
             observer.check()?;
-            Ok(self.part(weight).objective(&Prior::with(parameters), weight))
+            Ok(part.objective(&Prior::with(parameters), weight))
         })?;
         let prior = Prior::rounded(&lowest.point);
-        let error = self.error_of(&prior, weight);
+        let error = part.error_of(&prior, weight);
         Ok(Found { prior, weight, error, curvature: lowest.inverse_hessian })
     }
 
     /// ½ ln of the mean square error of left-out values, infinite if it cannot be computed.
     pub fn error_of(&self, prior: &Prior, weight: f64) -> f64 {
-        self.part(weight).left_out_error(prior, weight).unwrap_or(f64::INFINITY)
+        self.part(weight).error_of(prior, weight)
     }
 
     /// The equations that a search uses.
@@ -207,6 +208,10 @@ impl Part<'_> {
         let mut by_matrix = &regularized.inverse / (2.0 * count);
         by_matrix.ger(-0.5 / square, &weighted, &weighted, 1.0);
         Some((value, kernel.gradient(&regularized.by_kernel(by_matrix, &self.equations))))
+    }
+
+    fn error_of(&self, prior: &Prior, weight: f64) -> f64 {
+        self.left_out_error(prior, weight).unwrap_or(f64::INFINITY)
     }
 
     /// ½ ln of the mean of Δ² at left-out values, no smaller than rounding.

@@ -33,6 +33,14 @@ pub enum ModelError {
         /// What it must be.
         range: &'static str,
     },
+    /// A linearization has not one derivative per input, as large as the state matrix.
+    #[error("the model gave {found} derivatives of the size of its state matrix; {expected} inputs need one each")]
+    Derivatives {
+        /// Derivatives of the right size.
+        found: usize,
+        /// Number of inputs.
+        expected: usize,
+    },
     /// The mass matrix cannot be inverted.
     #[error("the mass matrix is singular")]
     SingularMass,
