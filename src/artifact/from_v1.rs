@@ -2,10 +2,9 @@
 
 use super::error::ReadError;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
-use super::to_v1::global_element;
 use super::v1;
 use crate::index_set::{IndexSet, MultiIndex};
-use crate::input::{Input, InputSpace, Marginal, Uniform};
+use crate::input::{Branch, Element, Input, InputSpace, Marginal, Mesh, Split, Uniform};
 use crate::spectrum::{Component, Output, OutputKind};
 use crate::surrogate::{
     Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
@@ -29,17 +28,16 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
     let provenance = provenance(document.meta)?;
     let inputs = inputs(&document.inputs)?;
     let outputs = outputs(document.outputs)?;
-    if document.elements != global_element(inputs.dimension()) {
-        return Err(ReadError::Unsupported { what: "several elements or an element that is not the whole box".into() });
-    }
-    let components = outputs.iter().map(|output| output.components.len()).sum();
-    let expansions = expansions(document.expansions, inputs.dimension(), components)?;
+    let mesh = mesh(&document.elements, inputs.dimension())?;
+    let components: usize = outputs.iter().map(|output| output.components.len()).sum();
+    let expansions = expansions(document.expansions, inputs.dimension(), mesh.elements().len(), components)?;
     check_recurrences(&document.inputs, &expansions)?;
     let self_test = self_test(document.self_test, &inputs, components)?;
     Ok(Surrogate {
         provenance,
         inputs,
         outputs,
+        mesh,
         expansions,
         training: training(document.training)?,
         decision: decision(document.decision)?,
@@ -144,14 +142,57 @@ fn output(output: v1::Output) -> Result<Output, ReadError> {
     })
 }
 
-fn expansions(section: v1::Expansions, inputs: usize, components: usize) -> Result<Vec<Expansion>, ReadError> {
+/// The elements are what the splits leave of the whole box, and their maps and weights fit their bounds.
+fn mesh(section: &v1::Elements, dimension: usize) -> Result<Mesh, ReadError> {
+    let meaning = |message: String| ReadError::Meaning { section: "elements", message };
+    let mut elements = Vec::with_capacity(section.elements.len());
+    for (at, stored) in section.elements.iter().enumerate() {
+        let bounds: Option<Vec<&v1::Bounds>> = stored.sides.iter().map(|side| side.bounds.as_ref()).collect();
+        let bounds = bounds.filter(|bounds| bounds.len() == dimension);
+        let bounds = bounds.ok_or_else(|| meaning(format!("element {at} does not have {dimension} bounded sides")))?;
+        let (lower, upper) = bounds.iter().map(|bounds| (bounds.lower, bounds.upper)).unzip();
+        let element = Element { weight: stored.weight, lower, upper };
+        let fits = |(j, side): (usize, &v1::Side)| {
+            let half_width = element.half_width(j);
+            close(side.center, element.center(j), half_width) && close(side.half_width, half_width, half_width)
+        };
+        if !stored.sides.iter().enumerate().all(fits) {
+            return Err(meaning(format!("element {at}: centre or half width do not fit the bounds")));
+        }
+        elements.push(element);
+    }
+    let branch = |branch| match branch {
+        v1::Branch::Element(at) => Branch::Element(at as usize),
+        v1::Branch::Split(at) => Branch::Split(at as usize),
+    };
+    let split = |split: &v1::Split| Split {
+        input: split.input as usize,
+        at: split.at,
+        below: branch(split.below),
+        above: branch(split.above),
+    };
+    let splits = section.splits.iter().map(split).collect();
+    Mesh::from_parts(dimension, elements, splits).map_err(|error| meaning(error.to_string()))
+}
+
+fn expansions(
+    section: v1::Expansions,
+    inputs: usize,
+    elements: usize,
+    components: usize,
+) -> Result<Vec<Expansion>, ReadError> {
     let index_sets: Vec<IndexSet> =
         section.index_sets.into_iter().map(|set| index_set(set, inputs)).collect::<Result<_, _>>()?;
     let mut expansions = section.expansions;
-    expansions.sort_by_key(|expansion| expansion.component);
-    let complete = expansions.len() == components
-        && expansions.iter().enumerate().all(|(id, e)| e.component as usize == id && e.element == 0);
-    ensure("expansions", complete, || format!("there is not one expansion for each of {components} components"))?;
+    expansions.sort_by_key(|expansion| (expansion.element, expansion.component));
+    let is_next = |(number, e): (usize, &v1::Expansion)| {
+        (e.element as usize, e.component as usize) == (number / components, number % components)
+    };
+    let complete =
+        Some(expansions.len()) == elements.checked_mul(components) && expansions.iter().enumerate().all(is_next);
+    ensure("expansions", complete, || {
+        format!("there is not one expansion for each of {elements} elements and {components} components")
+    })?;
     expansions.into_iter().map(|e| expansion(e, &index_sets)).collect()
 }
 

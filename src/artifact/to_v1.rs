@@ -5,10 +5,12 @@ use super::error::WriteError;
 use super::meaning::not_finite;
 use super::v1;
 use super::version::{MAJOR, minor};
-use crate::input::Marginal;
+use crate::index_set::IndexSet;
+use crate::input::{Branch, Element, Marginal, Mesh};
 use crate::polynomial::Family;
 use crate::spectrum::{Output, OutputKind};
-use crate::surrogate::{Certificate, Expansion, LeaveOut, SettingValue, StopReason, Surrogate};
+use crate::surrogate::{Certificate, LeaveOut, SettingValue, StopReason, Surrogate};
+use std::collections::HashMap;
 
 pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
     let provenance = &surrogate.provenance;
@@ -23,8 +25,8 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
         },
         inputs: inputs(surrogate),
         outputs: v1::Outputs { outputs: surrogate.outputs.iter().map(output).collect() },
-        elements: global_element(surrogate.inputs.dimension()),
-        expansions: expansions(&surrogate.expansions),
+        elements: elements(&surrogate.mesh),
+        expansions: expansions(surrogate),
         training: training(surrogate),
         decision: decision(surrogate),
         self_test: v1::SelfTest {
@@ -89,27 +91,47 @@ fn output(output: &Output) -> v1::Output {
     }
 }
 
-/// The whole box [−1, 1]ʳ as one element.
-pub(super) fn global_element(dimension: usize) -> v1::Elements {
-    let side = v1::Side { bounds: Some(v1::Bounds { lower: -1.0, upper: 1.0 }), center: 0.0, half_width: 1.0 };
-    v1::Elements { elements: vec![v1::Element { weight: 1.0, sides: vec![side; dimension] }], splits: Vec::new() }
+fn elements(mesh: &Mesh) -> v1::Elements {
+    let branch = |branch| match branch {
+        Branch::Element(at) => v1::Branch::Element(at as u32),
+        Branch::Split(at) => v1::Branch::Split(at as u32),
+    };
+    let splits = mesh.splits().iter().map(|split| v1::Split {
+        input: split.input as u32,
+        at: split.at,
+        below: branch(split.below),
+        above: branch(split.above),
+    });
+    v1::Elements { elements: mesh.elements().iter().map(element).collect(), splits: splits.collect() }
+}
+
+fn element(element: &Element) -> v1::Element {
+    let side = |j: usize| v1::Side {
+        bounds: Some(v1::Bounds { lower: element.lower[j], upper: element.upper[j] }),
+        center: element.center(j),
+        half_width: element.half_width(j),
+    };
+    v1::Element { weight: element.weight, sides: (0..element.lower.len()).map(side).collect() }
 }
 
 /// Expansions with equal index sets share one.
-fn expansions(expansions: &[Expansion]) -> v1::Expansions {
-    let mut index_sets: Vec<Vec<Vec<u16>>> = Vec::new();
-    let expansions = expansions
+fn expansions(surrogate: &Surrogate) -> v1::Expansions {
+    let mut pool: Vec<&IndexSet> = Vec::new();
+    let mut positions: HashMap<&IndexSet, usize> = HashMap::new();
+    let components = surrogate.component_count();
+    let expansions = surrogate
+        .expansions
         .iter()
         .enumerate()
-        .map(|(component, expansion)| {
-            let indices: Vec<Vec<u16>> = expansion.indices.iter().map(|alpha| alpha.to_vec()).collect();
-            let index_set = index_sets.iter().position(|known| *known == indices).unwrap_or_else(|| {
-                index_sets.push(indices);
-                index_sets.len() - 1
+        .map(|(number, expansion)| {
+            let indices = &expansion.indices;
+            let index_set = *positions.entry(indices).or_insert_with(|| {
+                pool.push(indices);
+                pool.len() - 1
             });
             v1::Expansion {
-                element: 0,
-                component: component as u32,
+                element: (number / components) as u32,
+                component: (number % components) as u32,
                 index_set: index_set as u32,
                 coefficients: expansion.coefficients.clone(),
                 r2: expansion.r2,
@@ -129,7 +151,8 @@ fn expansions(expansions: &[Expansion]) -> v1::Expansions {
             }
         })
         .collect();
-    v1::Expansions { index_sets, expansions }
+    let listed = |set: &IndexSet| set.iter().map(|alpha| alpha.to_vec()).collect();
+    v1::Expansions { index_sets: pool.into_iter().map(listed).collect(), expansions }
 }
 
 fn training(surrogate: &Surrogate) -> v1::Training {

@@ -13,12 +13,14 @@ pub const MAJOR: u16 = 1;
 /// * 0: eigenvalue outputs, uniform inputs, one element.
 /// * 1: clusters, with modes in the order of their frequencies; the mode of a cluster with the lowest Im λ comes first,
 ///   equal frequencies within 10⁻¹² by Re λ.
-pub const MINOR: u16 = 1;
+/// * 2: several elements; errors of an expansion are relative to the variance over all of them.
+pub const MINOR: u16 = 2;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers read
 /// what they can.
 pub(super) fn minor(surrogate: &Surrogate) -> u16 {
-    u16::from(surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster))
+    let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
+    if surrogate.mesh.elements().len() > 1 { 2 } else { u16::from(has_clusters) }
 }
 
 /// What this code can do with a file.

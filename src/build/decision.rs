@@ -231,7 +231,7 @@ impl<'a> Judge<'a> {
             }
             Ok(evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>()))
         })?;
-        let mut block = Block::with_capacity(surrogate.expansions.len(), surrogate.modes().len(), POINTS);
+        let mut block = Block::with_capacity(surrogate.component_count(), surrogate.modes().len(), POINTS);
         for part in parts {
             block.append(part);
         }

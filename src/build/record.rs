@@ -4,6 +4,7 @@ use super::components::ComponentResult;
 use super::evaluations::Evaluations;
 use crate::design::NestedLatinHypercube;
 use crate::fit::{Fitted, Stop};
+use crate::input::Mesh;
 use crate::regression::Gradients;
 use crate::spectrum::{Component, Output};
 use crate::study::{FitMethod, Study};
@@ -36,6 +37,7 @@ pub(super) fn surrogate(
             study_hash: study.study_hash(),
         },
         inputs: study.inputs.clone(),
+        mesh: Mesh::whole(study.inputs.dimension()),
         expansions: fitted.iter().zip(components).map(|(fit, component)| expansion(&fit.result, component)).collect(),
         outputs,
         training: training(study, fitted, gradients, evaluations.runs().len(), levels.to_vec()),

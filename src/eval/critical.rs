@@ -20,7 +20,7 @@
 use super::bracket::{Bracket, End};
 use super::chunks::{CHUNK, in_chunks};
 use super::monte_carlo::EvalError;
-use super::plan::{LANES, Plan};
+use super::plan::Plan;
 use super::points::Evaluator;
 use crate::input::{Marginal, Uniform, random_point};
 use crate::progress::Observer;
@@ -254,9 +254,7 @@ impl Search<'_> {
             point[input] = xi;
         };
         let mut block = self.evaluator.block(trials.len());
-        for group in trials.chunks(LANES) {
-            self.evaluator.evaluate(group.len(), |lane, point| set_point(group[lane], point), &mut block);
-        }
+        self.evaluator.evaluate(trials.len(), |number, point| set_point(trials[number], point), &mut block);
         if let Some(at) = block.first_not_finite() {
             let inputs = &self.surrogate.inputs;
             let mut point = vec![0.0; inputs.dimension()];

@@ -1,7 +1,7 @@
 //! Surrogates written by hand, whose answers are known: for tests.
 
 use crate::index_set::{IndexSet, MultiIndex};
-use crate::input::{Input, InputSpace, Marginal, Uniform};
+use crate::input::{Input, InputSpace, Marginal, Mesh, Uniform};
 use crate::spectrum::{Component, Output, OutputKind};
 use crate::surrogate::{Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, StopReason, Surrogate, Training};
 
@@ -55,6 +55,7 @@ pub fn surrogate(inputs: InputSpace, growth_rates: Vec<Expansion>) -> Surrogate 
             problem_hash: String::new(),
             study_hash: String::new(),
         },
+        mesh: Mesh::whole(inputs.dimension()),
         inputs,
         outputs,
         expansions,

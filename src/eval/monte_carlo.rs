@@ -5,7 +5,7 @@
 //! the number of samples.
 
 use super::chunks::in_chunks;
-use super::plan::{LANES, Plan};
+use super::plan::Plan;
 use super::points::Evaluator;
 use crate::input::random_point;
 use crate::progress::{Interrupted, Observer};
@@ -15,8 +15,12 @@ use crate::surrogate::Surrogate;
 use std::ops::Range;
 use thiserror::Error;
 
-/// Samples summarised together, a multiple of [`LANES`]: part of the result's definition, since it fixes the order of sums.
+/// Samples summarised together, a multiple of [`super::LANES`]: part of the result's definition, since it fixes the order of sums.
 const CHUNK: u64 = 4096;
+
+/// More of them where there are many elements, each of which has some points of a chunk to evaluate together.
+const SAMPLES_PER_ELEMENT: u64 = 64;
+const LARGEST_CHUNK: u64 = 1 << 16;
 
 /// Why an evaluation gave no result.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -62,10 +66,11 @@ pub fn monte_carlo(
     observer: &dyn Observer,
 ) -> Result<Summary, EvalError> {
     let plan = Plan::new(surrogate);
-    let mut summary = Summary::new(surrogate.expansions.len(), surrogate.modes().len());
+    let mut summary = Summary::new(surrogate.component_count(), surrogate.modes().len());
+    let by_elements = SAMPLES_PER_ELEMENT * surrogate.mesh.elements().len() as u64;
     in_chunks(
         samples,
-        CHUNK,
+        by_elements.clamp(CHUNK, LARGEST_CHUNK).next_multiple_of(CHUNK),
         observer,
         || Evaluator::new(surrogate, &plan),
         |evaluator, range| summarise(surrogate, evaluator, seed, range),
@@ -81,14 +86,12 @@ fn summarise(
     seed: u64,
     range: Range<u64>,
 ) -> Result<Summary, EvalError> {
-    let mut block = evaluator.block(CHUNK as usize);
-    for start in range.clone().step_by(LANES) {
-        let lanes = LANES.min((range.end - start) as usize);
-        let set_point = |lane, point: &mut [f64]| {
-            random_point(&surrogate.inputs, seed, Purpose::Evaluation, start + lane as u64, point);
-        };
-        evaluator.evaluate(lanes, set_point, &mut block);
-    }
+    let count = (range.end - range.start) as usize;
+    let mut block = evaluator.block(count);
+    let set_point = |number, point: &mut [f64]| {
+        random_point(&surrogate.inputs, seed, Purpose::Evaluation, range.start + number as u64, point);
+    };
+    evaluator.evaluate(count, set_point, &mut block);
     match block.first_not_finite() {
         None => Ok(Summary::of(&block, surrogate.decision.band_shifts())),
         Some(at) => {

@@ -3,8 +3,9 @@
 //! All components are expanded in products of the same univariate polynomials, and their multi-indices overlap. The plan
 //! merges them into one prefix tree: a term is its parent times one univariate value, computed once for all components
 //! that use it. Points are evaluated in blocks of [`LANES`], one point per lane, so every inner loop is a plain loop over
-//! lanes that compiles to vector instructions.
+//! lanes that compiles to vector instructions. Each element has a program of its own.
 
+use crate::input::Mesh;
 use crate::polynomial::Recurrence;
 use crate::surrogate::Surrogate;
 use std::collections::BTreeMap;
@@ -51,13 +52,21 @@ struct Univariate {
 /// let mut workspace = plan.workspace();
 /// // One input, the same point in every lane.
 /// workspace.points_mut()[0] = [0.25; LANES];
-/// plan.evaluate(&mut workspace);
+/// plan.evaluate(0, &mut workspace);
 /// let expected = surrogate.evaluate(&[0.25])[0];
 /// assert!((workspace.components()[0][0] - expected).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
+    mesh: Mesh,
+    /// One per element.
+    programs: Vec<Program>,
+}
+
+/// The merged expansions of one element.
+#[derive(Debug, Clone, PartialEq)]
+struct Program {
     univariates: Vec<Univariate>,
     rows: usize,
     nodes: Vec<Node>,
@@ -78,7 +87,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Standardized coordinates: one entry per input, one lane per point.
+    /// Local variables of the element, for one element the standardized coordinates: one entry per input, one lane per point.
     pub fn points_mut(&mut self) -> &mut [Lanes] {
         &mut self.points
     }
@@ -92,11 +101,58 @@ impl Workspace {
 impl Plan {
     /// Compiles `surrogate`. Centre and scale of the components are folded into the coefficients.
     pub fn new(surrogate: &Surrogate) -> Self {
+        let elements = 0..surrogate.mesh.elements().len();
+        Self {
+            mesh: surrogate.mesh.clone(),
+            programs: elements.map(|element| Program::new(surrogate, element)).collect(),
+        }
+    }
+
+    /// The elements and how to find them.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Number of terms of the merged expansion of an element, the constant not counted; the most of any element.
+    pub fn terms(&self) -> usize {
+        self.programs.iter().map(|program| program.nodes.len()).max().unwrap_or(0)
+    }
+
+    /// Floating-point operations per point: three per univariate value, one product per term, two per coefficient; with several
+    /// elements two per input for the local variables, and those of the most expensive element.
+    pub fn flops(&self) -> usize {
+        let maps = if self.programs.len() > 1 { 2 * self.programs[0].univariates.len() } else { 0 };
+        maps + self.programs.iter().map(Program::flops).max().unwrap_or(0)
+    }
+
+    /// Memory for [`Plan::evaluate`].
+    pub fn workspace(&self) -> Workspace {
+        let most = |part: fn(&Program) -> usize| self.programs.iter().map(part).max().unwrap_or(0);
+        Workspace {
+            points: vec![[0.0; LANES]; most(|program| program.univariates.len())],
+            table: vec![[0.0; LANES]; most(|program| program.rows)],
+            path: vec![[1.0; LANES]; most(|program| program.depth) + 1],
+            components: vec![[0.0; LANES]; most(|program| program.constants.len())],
+        }
+    }
+
+    /// Evaluates all components at the points of the workspace, which lie in this element.
+    ///
+    /// # Panics
+    ///
+    /// If there are not that many elements.
+    pub fn evaluate(&self, element: usize, workspace: &mut Workspace) {
+        self.programs[element].evaluate(workspace);
+    }
+}
+
+impl Program {
+    fn new(surrogate: &Surrogate, element: usize) -> Self {
         let components = surrogate.components();
         let mut constants: Vec<f64> = components.iter().map(|component| component.center).collect();
         let mut terms: BTreeMap<Vec<(usize, u16)>, Vec<Use>> = BTreeMap::new();
         for component in &components {
-            let expansion = &surrogate.expansions[component.id];
+            let expansion = surrogate.expansion(element, component.id);
             for (alpha, coefficient) in expansion.indices.iter().zip(&expansion.coefficients) {
                 let coefficient = component.scale * coefficient;
                 let factors: Vec<(usize, u16)> = alpha.iter().copied().enumerate().filter(|&(_, k)| k > 0).collect();
@@ -140,28 +196,11 @@ impl Plan {
         Self { univariates, rows, nodes, uses, constants, depth }
     }
 
-    /// Number of terms of the merged expansion, the constant not counted.
-    pub fn terms(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// Floating-point operations per point: three per univariate value, one product per term, two per coefficient.
-    pub fn flops(&self) -> usize {
+    fn flops(&self) -> usize {
         3 * self.rows + self.nodes.len() + 2 * self.uses.len()
     }
 
-    /// Memory for [`Plan::evaluate`].
-    pub fn workspace(&self) -> Workspace {
-        Workspace {
-            points: vec![[0.0; LANES]; self.univariates.len()],
-            table: vec![[0.0; LANES]; self.rows],
-            path: vec![[1.0; LANES]; self.depth + 1],
-            components: vec![[0.0; LANES]; self.constants.len()],
-        }
-    }
-
-    /// Evaluates all components at the points of the workspace.
-    pub fn evaluate(&self, workspace: &mut Workspace) {
+    fn evaluate(&self, workspace: &mut Workspace) {
         let Workspace { points, table, path, components } = workspace;
         for (univariate, point) in self.univariates.iter().zip(points.iter()) {
             fill_table(&univariate.recurrence, point, &mut table[univariate.first_row..]);

@@ -29,7 +29,7 @@
 use super::chunks::{CHUNK, in_chunks};
 use super::correlation::{Correlation, Products};
 use super::monte_carlo::EvalError;
-use super::plan::{LANES, Plan};
+use super::plan::Plan;
 use super::points::{Evaluator, evaluate_points};
 use crate::input::InputSpace;
 use crate::progress::Observer;
@@ -249,13 +249,12 @@ impl Comparer<'_> {
 
     fn column(&mut self, choice: Choice) -> Result<Column, EvalError> {
         let dimension = self.surrogate.inputs.dimension();
-        let mut block = self.evaluator.block(self.pairs.len() / (2 * dimension));
-        for group in self.pairs.chunks(LANES * 2 * dimension) {
-            let set_point = |lane: usize, point: &mut [f64]| {
-                choice.set(&group[lane * 2 * dimension..(lane + 1) * 2 * dimension], point);
-            };
-            self.evaluator.evaluate(group.len() / (2 * dimension), set_point, &mut block);
-        }
+        let (samples, pairs) = (self.pairs.len() / (2 * dimension), &self.pairs);
+        let mut block = self.evaluator.block(samples);
+        let set_point = |number: usize, point: &mut [f64]| {
+            choice.set(&pairs[number * 2 * dimension..(number + 1) * 2 * dimension], point);
+        };
+        self.evaluator.evaluate(samples, set_point, &mut block);
         if let Some(at) = block.max_re.iter().position(|&max_re| !is_usable(max_re)) {
             let mut point = vec![0.0; dimension];
             choice.set(&self.pairs[at * 2 * dimension..(at + 1) * 2 * dimension], &mut point);

@@ -188,8 +188,8 @@ fn invariant_errors(
     block: &Block,
 ) -> Result<Vec<ComponentError>, (usize, SpectrumError)> {
     let clusters: Vec<&Output> = surrogate.outputs.iter().filter(|output| output.kind == OutputKind::Cluster).collect();
-    let mut values = vec![Vec::with_capacity(runs.len()); surrogate.expansions.len()];
-    let mut at_run = vec![0.0; surrogate.expansions.len()];
+    let mut values = vec![Vec::with_capacity(runs.len()); surrogate.component_count()];
+    let mut at_run = vec![0.0; surrogate.component_count()];
     for (i, run) in runs.iter().enumerate() {
         for output in &clusters {
             output.decompose(&run.spectrum, &mut at_run).map_err(|cause| (i, cause))?;

@@ -65,15 +65,15 @@ impl FitReport {
     /// The fits of all components.
     pub fn of(surrogate: &Surrogate) -> Vec<Self> {
         let report = |component: &crate::spectrum::Component| {
-            let expansion = &surrogate.expansions[component.id];
+            let fit = surrogate.fit_of(component.id);
             Self {
                 name: component.name.clone(),
-                degree: expansion.degree,
-                terms: expansion.indices.len(),
-                r2: expansion.r2,
-                s2: expansion.s2,
-                corrected_s2: expansion.corrected_s2,
-                stop: expansion.stop.describe(),
+                degree: fit.degree,
+                terms: fit.terms,
+                r2: fit.r2,
+                s2: fit.s2,
+                corrected_s2: fit.corrected_s2,
+                stop: fit.stop.describe(),
             }
         };
         surrogate.components().into_iter().map(report).collect()

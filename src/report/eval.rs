@@ -239,7 +239,7 @@ fn mode_report(mode: usize, summary: &ModeSummary, samples: u64) -> ModeReport {
 
 fn analyses(surrogate: &Surrogate) -> Vec<Analysis> {
     let sobol = |id: usize| {
-        let Some(indices) = surrogate.expansions[id].sobol_indices() else { return Vec::new() };
+        let Some(indices) = surrogate.sobol_indices(id) else { return Vec::new() };
         let shares = indices.first.into_iter().zip(indices.total);
         let report =
             |(input, (first, total)): (&str, (f64, f64))| SobolReport { input: input.to_owned(), first, total };

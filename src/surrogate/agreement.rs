@@ -12,8 +12,8 @@ use thiserror::Error;
 /// of its regression, below 10⁴ for N ≥ 2 card(A).
 pub const PORTABLE_TOLERANCE: f64 = 1e-9;
 
-/// The method without a search for settings.
-const STEPWISE: &str = "stepwise";
+/// The methods without a search for settings.
+const WITHOUT_SEARCH: [&str; 3] = ["stepwise", "gpc", "me-gpc"];
 
 /// Leave-one-out errors by which predictions may differ: the largest of some ten points, of two builds.
 const ERRORS_APART: f64 = 5.0;
@@ -63,14 +63,15 @@ impl Surrogate {
     /// The first [`Disagreement`].
     pub fn agrees_with(&self, other: &Self) -> Result<(), Disagreement> {
         let same_study = self.provenance.study_hash == other.provenance.study_hash
-            && (&self.inputs, &self.outputs) == (&other.inputs, &other.outputs);
+            && (&self.inputs, &self.outputs, &self.mesh) == (&other.inputs, &other.outputs, &other.mesh);
         if !same_study || self.expansions.len() != other.expansions.len() {
             return Err(Disagreement::Study);
         }
-        if self.training.method != STEPWISE {
+        if !WITHOUT_SEARCH.contains(&self.training.method.as_str()) {
             return self.predicts_like(other);
         }
-        for (component, (own, others)) in self.expansions.iter().zip(&other.expansions).enumerate() {
+        for (number, (own, others)) in self.expansions.iter().zip(&other.expansions).enumerate() {
+            let component = number % self.component_count();
             if own.indices != others.indices {
                 return Err(Disagreement::IndexSet { component });
             }
@@ -85,9 +86,9 @@ impl Surrogate {
     }
 
     fn predicts_like(&self, other: &Self) -> Result<(), Disagreement> {
-        for (component, expansion) in self.components().into_iter().zip(&self.expansions) {
-            let unexplained = 1.0 - expansion.s2.unwrap_or(1.0);
-            let deviation = (expansion.variance() * unexplained).sqrt() * component.scale.abs();
+        for (component, (_, variance)) in self.components().into_iter().zip(self.moments()) {
+            let unexplained = 1.0 - self.fit_of(component.id).s2.unwrap_or(1.0);
+            let deviation = (variance * unexplained).sqrt();
             let scale = self.self_test.components.iter().fold(0f64, |scale, row| scale.max(row[component.id].abs()));
             let error = ERRORS_APART * deviation + PORTABLE_TOLERANCE * scale;
             let rows = self.self_test.components.iter().zip(&other.self_test.components);

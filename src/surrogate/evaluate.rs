@@ -11,15 +11,17 @@ impl Surrogate {
     /// Values of all components by id at the standardized point ξ.
     pub fn evaluate(&self, standardized: &[f64]) -> Vec<f64> {
         let inputs = self.inputs.inputs();
-        let mut values = vec![0.0; self.expansions.len()];
+        let mut values = vec![0.0; self.component_count()];
+        let element = self.mesh.locate(standardized);
+        let local = self.mesh.elements()[element].local(standardized);
         for component in self.components() {
-            let expansion = &self.expansions[component.id];
+            let expansion = self.expansion(element, component.id);
             let degrees = expansion.indices.highest_degrees(inputs.len());
             let univariate: Vec<Vec<f64>> = (0..inputs.len())
                 .map(|j| {
                     let mut values = vec![0.0; usize::from(degrees[j]) + 1];
                     let recurrence = inputs[j].marginal.family().recurrence(usize::from(degrees[j]));
-                    recurrence.evaluate(standardized[j], &mut values);
+                    recurrence.evaluate(local[j], &mut values);
                     values
                 })
                 .collect();

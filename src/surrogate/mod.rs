@@ -6,19 +6,19 @@ mod evaluate;
 mod records;
 
 pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
-pub use analysis::SobolIndices;
+pub use analysis::{FitQuality, SobolIndices};
 pub use records::{
     Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
     StopReason, Training,
 };
 
-use crate::input::InputSpace;
+use crate::input::{InputSpace, Mesh};
 use crate::spectrum::{Component, Output};
 
 /// A surrogate model of the eigenvalues of a system with uncertain parameters.
 ///
-/// Component k is center + scale · Σ_α c_α ψ_α(ξ) with the expansion of the same id; outputs say how components become
-/// eigenvalues.
+/// Component k is center + scale · Σ_α c_α ψ_α with its expansion in the element that holds the point, at the local variables
+/// there; outputs say how components become eigenvalues. A global expansion has one element, whose local variables are ξ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surrogate {
     /// Where it comes from.
@@ -27,7 +27,9 @@ pub struct Surrogate {
     pub inputs: InputSpace,
     /// What the components form.
     pub outputs: Vec<Output>,
-    /// One expansion per component, by component id.
+    /// The elements, each with expansions of its own.
+    pub mesh: Mesh,
+    /// For each element in order, one expansion per component, by component id.
     pub expansions: Vec<Expansion>,
     /// How it was trained.
     pub training: Training,
@@ -45,6 +47,21 @@ impl Surrogate {
         let mut components: Vec<_> = self.outputs.iter().flat_map(|output| &output.components).collect();
         components.sort_by_key(|component| component.id);
         components
+    }
+
+    /// Number of components.
+    pub fn component_count(&self) -> usize {
+        self.outputs.iter().map(|output| output.components.len()).sum()
+    }
+
+    /// The expansion of the component with this id in an element.
+    pub fn expansion(&self, element: usize, component: usize) -> &Expansion {
+        &self.expansions[element * self.component_count() + component]
+    }
+
+    /// The expansions of the component with this id, element by element.
+    pub fn expansions_of(&self, component: usize) -> impl Iterator<Item = &Expansion> {
+        self.expansions.iter().skip(component).step_by(self.component_count())
     }
 
     /// Frequency ranks of all modes it carries, in the order in which recombination yields them.

@@ -15,7 +15,8 @@ pub struct Provenance {
     pub study_hash: String,
 }
 
-/// A sparse polynomial chaos expansion Σ_α c_α ψ_α(ξ) of one component.
+/// A polynomial chaos expansion Σ_α c_α ψ_α of one component in one element, in its local variables. Errors are relative to the
+/// variance over all elements, so that their mean with the elements' weights is that of the whole.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
     /// A, in canonical order.
