@@ -44,6 +44,7 @@ pub mod input;
 pub mod model;
 pub mod numerics;
 pub mod parallel;
+pub mod plot;
 pub mod polynomial;
 pub mod progress;
 pub mod random;

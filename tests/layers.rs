@@ -16,7 +16,7 @@ const LAYERS: [&[&str]; 8] = [
     &["regression", "fit"],
     &["surrogate", "artifact"],
     &["build", "eval", "reference"],
-    &["report", "cli"],
+    &["plot", "report", "cli"],
 ];
 
 /// What the evaluator may import besides its own files: the surrogate, layers 0 and 1, and the part of the spectrum that
