@@ -106,14 +106,7 @@ pub fn compare(
         return Err(other_problem());
     }
     let plan = Plan::new(surrogate);
-    let mut comparison = Comparison {
-        samples,
-        stable_model: 0,
-        stable_surrogate: 0,
-        falsely_stable: 0,
-        falsely_unstable: 0,
-        components: Vec::new(),
-    };
+    let mut comparison = Comparison::new(samples);
     for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, points, runs| {
         let mut modes = surrogate.modes();
         modes.sort_unstable();
@@ -121,12 +114,13 @@ pub fn compare(
             return Err(other_problem());
         }
         let block = surrogate_block(surrogate, &plan, points)?;
-        comparison.classify(runs, &block);
-        let mut errors = mode_errors(runner.modes(), surrogate, runs, &block);
-        let at_point = |i: usize| study.inputs.describe(&study.inputs.physical(&points[i]));
+        comparison.classify(runs.iter().map(|run| run.spectrum.max_re()), &block);
+        let at_point = |position: usize, i: usize| runs[i].eigenvalues[position];
+        let mut errors = mode_errors(runner.modes(), surrogate, runs.len(), at_point, &block);
+        let describe = |i: usize| study.inputs.describe(&study.inputs.physical(&points[i]));
         errors.extend(
             invariant_errors(surrogate, runs, &block)
-                .map_err(|(i, cause)| ReferenceError::Spectrum { point: at_point(i), cause })?,
+                .map_err(|(i, cause)| ReferenceError::Spectrum { point: describe(i), cause })?,
         );
         comparison.merge(errors);
         Ok(())
@@ -135,10 +129,22 @@ pub fn compare(
 }
 
 impl Comparison {
-    /// Counts on whose stability model and surrogate disagree.
-    fn classify(&mut self, runs: &[Run], block: &Block) {
-        for (run, &max_re) in runs.iter().zip(&block.max_re) {
-            let (model, found) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
+    /// Nothing compared yet, of so many points.
+    pub(super) fn new(samples: u64) -> Self {
+        Self {
+            samples,
+            stable_model: 0,
+            stable_surrogate: 0,
+            falsely_stable: 0,
+            falsely_unstable: 0,
+            components: Vec::new(),
+        }
+    }
+
+    /// Counts on whose stability model, with this max Re λ at each point, and surrogate disagree.
+    pub(super) fn classify(&mut self, max_re: impl Iterator<Item = f64>, block: &Block) {
+        for (model, &found) in max_re.zip(&block.max_re) {
+            let (model, found) = (model < 0.0, found < 0.0);
             self.stable_model += u64::from(model);
             self.stable_surrogate += u64::from(found);
             self.falsely_stable += u64::from(found && !model);
@@ -146,7 +152,7 @@ impl Comparison {
         }
     }
 
-    fn merge(&mut self, errors: Vec<ComponentError>) {
+    pub(super) fn merge(&mut self, errors: Vec<ComponentError>) {
         if self.components.is_empty() {
             self.components = errors;
             return;
@@ -161,15 +167,22 @@ impl Comparison {
 /// Real or imaginary part.
 type Part = fn(&Complex<f64>) -> f64;
 
-/// Re λ and Im λ of every mode.
-fn mode_errors(modes: &[usize], surrogate: &Surrogate, runs: &[Run], block: &Block) -> Vec<ComponentError> {
+/// Re λ and Im λ of every mode at so many points; `lambda(position, i)` is the model's eigenvalue of the mode at this position of
+/// `modes`, at point i.
+pub(super) fn mode_errors(
+    modes: &[usize],
+    surrogate: &Surrogate,
+    points: usize,
+    lambda: impl Fn(usize, usize) -> Complex<f64>,
+    block: &Block,
+) -> Vec<ComponentError> {
     let parts: [(&str, Part); 2] = [("re", |lambda| lambda.re), ("im", |lambda| lambda.im)];
     let order = surrogate.modes();
     let mut errors = Vec::with_capacity(2 * modes.len());
     for (at, mode) in modes.iter().enumerate() {
         let Some(position) = order.iter().position(|other| other == mode) else { continue };
         for (name, part) in parts {
-            let model: Vec<f64> = runs.iter().map(|run| part(&run.eigenvalues[at])).collect();
+            let model: Vec<f64> = (0..points).map(|i| part(&lambda(at, i))).collect();
             let found: Vec<f64> = block.eigenvalues[position].iter().map(part).collect();
             errors.push(ComponentError {
                 name: format!("{name}_{mode}"),

@@ -3,7 +3,9 @@
 mod certify;
 mod compare;
 mod monte_carlo;
+mod sample;
 
 pub use certify::certify;
 pub use compare::{Comparison, ComponentError, compare};
 pub use monte_carlo::{Reference, ReferenceError, monte_carlo};
+pub use sample::ModelSample;
