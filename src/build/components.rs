@@ -4,8 +4,8 @@ use crate::design::Samples;
 use crate::fit::auto::{self, Memory};
 use crate::fit::omp::{self, Candidates};
 use crate::fit::stepwise::{self, Outcome};
-use crate::fit::{Fitted, minimum_norm};
-use crate::index_set::{Hyperbolic, IndexSetError, MultiIndex};
+use crate::fit::{Fitted, gpc, minimum_norm};
+use crate::index_set::{Hyperbolic, IndexSet, IndexSetError, MultiIndex};
 use crate::parallel::try_map;
 use crate::polynomial::Recurrence;
 use crate::progress::{Interrupted, Observer};
@@ -33,6 +33,7 @@ enum Solver<'a> {
     Omp(&'a Smooth, Candidates),
     MinimumNorm(&'a Smooth),
     Auto(&'a Smooth, Candidates),
+    Gpc(IndexSet),
 }
 
 impl<'a> ComponentFit<'a> {
@@ -50,6 +51,10 @@ impl<'a> ComponentFit<'a> {
             FitMethod::Omp(settings) => Solver::Omp(settings, candidates(settings)?),
             FitMethod::MinimumNorm(settings) => Solver::MinimumNorm(settings),
             FitMethod::Auto(settings) => Solver::Auto(settings, candidates(settings)?),
+            // By least squares: quadrature has a build of its own.
+            FitMethod::Gpc(_) | FitMethod::MultiElement(_) => {
+                Solver::Gpc(gpc::total_degree(inputs, study.fit.method.max_degree())?)
+            }
         };
         let recurrences =
             study.inputs.inputs().iter().map(|input| input.marginal.family().recurrence(degree)).collect();
@@ -115,6 +120,7 @@ impl<'a> ComponentFit<'a> {
                 };
                 (result, "stepwise", memory.clone())
             }
+            Solver::Gpc(indices) => (gpc::least_squares(tables, response, indices, observer)?, "gpc", memory.clone()),
             Solver::MinimumNorm(settings) => {
                 let (result, learnt) = minimum_norm::fit(tables, response, settings, &memory.learnt, observer)?;
                 (result, "minimum-norm", Memory { learnt, ..*memory })

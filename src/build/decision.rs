@@ -142,13 +142,15 @@ fn honest_residuals(seen: &[Vec<f64>], blind: &[Vec<f64>]) -> Vec<Vec<f64>> {
 
 /// Share of the runs whose stability the carried modes do not decide as the model does.
 fn forgotten_share(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run]) -> f64 {
-    let contradicts = |(i, run): &(usize, &Run)| {
-        let exact: Vec<f64> = values.iter().map(|value| value[*i]).collect();
-        let carried = spectral_abscissa(&surrogate.eigenvalues(&exact));
-        let (model, scale) = (run.spectrum.max_re(), run.spectrum.largest());
-        (model < 0.0) != (carried < 0.0) && (model - carried).abs() > RECOMBINATION * scale
-    };
-    runs.iter().enumerate().filter(contradicts).count() as f64 / runs.len() as f64
+    let forgotten = runs.iter().enumerate().filter(|(i, run)| contradicts(surrogate, values, *i, run));
+    forgotten.count() as f64 / runs.len() as f64
+}
+
+fn contradicts(surrogate: &Surrogate, values: &[Vec<f64>], i: usize, run: &Run) -> bool {
+    let exact: Vec<f64> = values.iter().map(|value| value[i]).collect();
+    let carried = spectral_abscissa(&surrogate.eigenvalues(&exact));
+    let (model, scale) = (run.spectrum.max_re(), run.spectrum.largest());
+    (model < 0.0) != (carried < 0.0) && (model - carried).abs() > RECOMBINATION * scale
 }
 
 fn residual_quantiles(
@@ -157,16 +159,24 @@ fn residual_quantiles(
     values: &[Vec<f64>],
     runs: &[Run],
 ) -> Vec<Quantile> {
-    let mut found: Vec<f64> = residuals
-        .iter()
-        .enumerate()
-        .map(|(i, rest)| {
-            let predicted: Vec<f64> = values.iter().zip(rest).map(|(value, rest)| value[i] - rest).collect();
-            runs[i].spectrum.max_re() - spectral_abscissa(&surrogate.eigenvalues(&predicted))
-        })
-        .collect();
+    let residual = |(i, rest): (usize, &Vec<f64>)| {
+        let predicted: Vec<f64> = values.iter().zip(rest).map(|(value, rest)| value[i] - rest).collect();
+        runs[i].spectrum.max_re() - spectral_abscissa(&surrogate.eigenvalues(&predicted))
+    };
+    let mut found: Vec<f64> = residuals.iter().enumerate().map(residual).collect();
     found.sort_by(f64::total_cmp);
     LEVELS.map(|level| Quantile { level, value: quantile(&found, level) }).to_vec()
+}
+
+/// What is known of a surrogate by quadrature, from `values` of its components and `runs` at nodes with these `weights`, which sum
+/// to one. Residuals at nodes say nothing of what lies between them, so only the share of cases is known in which modes that the
+/// surrogate does not carry decide stability.
+pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run], weights: &[f64]) -> Decision {
+    let share = |holds: &dyn Fn(usize) -> bool| (0..runs.len()).filter(|&i| holds(i)).map(|i| weights[i]).sum::<f64>();
+    let forgotten = share(&|i| contradicts(surrogate, values, i, &runs[i]));
+    let stable = share(&|i| runs[i].spectrum.max_re() < 0.0);
+    let proportion_error = (forgotten > 0.0).then_some(forgotten / stable).filter(|error| error.is_finite());
+    Decision { max_re_residuals: Vec::new(), proportion_error }
 }
 
 /// ε of the module's head, relative to the proportion.

@@ -5,7 +5,7 @@ use crate::design::{NestedLatinHypercube, Run, RunError, Runner, Samples};
 use crate::model::Model;
 use crate::progress::Observer;
 use crate::regression::Gradients;
-use crate::spectrum::{ClusterError, Output, Spectrum, components as components_of};
+use crate::spectrum::{ClusterError, Output, Spectrum, SpectrumError, components as components_of};
 use crate::study::{Derivatives, DesignKind, Study};
 
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
@@ -28,7 +28,10 @@ impl<'a> Evaluations<'a> {
             study,
             design: match study.design.kind {
                 DesignKind::NestedLhs => NestedLatinHypercube::new(study.inputs.dimension(), study.seed),
-                DesignKind::NestedMaximinLhs => NestedLatinHypercube::spread_out(study.inputs.dimension(), study.seed),
+                // Tensor grids belong to builds by quadrature, which do not come here.
+                DesignKind::NestedMaximinLhs | DesignKind::TensorGauss => {
+                    NestedLatinHypercube::spread_out(study.inputs.dimension(), study.seed)
+                }
             },
             runner: Runner::of(study, model).with_derivatives(study.uses_derivatives()),
             runs: Vec::new(),
@@ -63,10 +66,7 @@ impl<'a> Evaluations<'a> {
     pub fn outputs(&self) -> Result<Vec<Output>, BuildError> {
         let spectra: Vec<Spectrum> = self.runs.iter().map(|run| run.spectrum.clone()).collect();
         self.study.spectrum.target.outputs(self.runner.modes(), &spectra).map_err(|cause| {
-            let at = match cause {
-                ClusterError::Split { at, .. } | ClusterError::NearRealAxis { at, .. } => at,
-                ClusterError::TooMany { .. } => 0,
-            };
+            let at = where_shown(&cause).unwrap_or(0);
             let inputs = &self.study.inputs;
             BuildError::Clusters { point: inputs.describe(&inputs.physical(self.samples().point(at))), cause }
         })
@@ -74,16 +74,10 @@ impl<'a> Evaluations<'a> {
 
     /// The values of each component of `outputs`, by id: one value per point.
     pub fn components(&self, outputs: &[Output]) -> Result<Vec<Vec<f64>>, BuildError> {
-        let mut components =
-            vec![Vec::with_capacity(self.runs.len()); outputs.iter().map(|o| o.components.len()).sum()];
-        for (i, run) in self.runs.iter().enumerate() {
-            let values = components_of(outputs, &run.spectrum).map_err(|cause| RunError::Spectrum {
-                point: self.study.inputs.describe(&self.study.inputs.physical(self.samples().point(i))),
-                cause,
-            })?;
-            components.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
-        }
-        Ok(components)
+        component_values(outputs, &self.runs).map_err(|(i, cause)| {
+            let point = self.study.inputs.describe(&self.study.inputs.physical(self.samples().point(i)));
+            RunError::Spectrum { point, cause }.into()
+        })
     }
 
     /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come without. Runs in
@@ -118,15 +112,39 @@ impl<'a> Evaluations<'a> {
     /// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver.
     pub fn resolutions(&self, outputs: &[Output]) -> Vec<f64> {
         let largest = self.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
-        let mut resolutions = vec![0.0; outputs.iter().map(|output| output.components.len()).sum()];
-        for output in outputs {
-            for (position, component) in output.components.iter().enumerate() {
-                // A coefficient of degree j in distances from the mean has the scale Rʲ: it moves by j Rʲ⁻¹ per unit of λ.
-                let others = (position / 2) as f64;
-                let radius = component.scale.powf(1.0 / (others + 1.0));
-                resolutions[component.id] = SOLVER_ACCURACY * largest * (others + 1.0) * radius.powf(others);
-            }
+        resolutions(outputs, largest)
+    }
+}
+
+/// The values of each component of `outputs`, by id: one value per run; or the first run without one.
+pub(super) fn component_values(outputs: &[Output], runs: &[Run]) -> Result<Vec<Vec<f64>>, (usize, SpectrumError)> {
+    let count = outputs.iter().map(|output| output.components.len()).sum();
+    let mut components = vec![Vec::with_capacity(runs.len()); count];
+    for (i, run) in runs.iter().enumerate() {
+        let values = components_of(outputs, &run.spectrum).map_err(|cause| (i, cause))?;
+        components.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
+    }
+    Ok(components)
+}
+
+/// Differences of each component of `outputs` up to this size are rounding of a solver whose largest eigenvalue is `largest`.
+pub(super) fn resolutions(outputs: &[Output], largest: f64) -> Vec<f64> {
+    let mut resolutions = vec![0.0; outputs.iter().map(|output| output.components.len()).sum()];
+    for output in outputs {
+        for (position, component) in output.components.iter().enumerate() {
+            // A coefficient of degree j in distances from the mean has the scale Rʲ: it moves by j Rʲ⁻¹ per unit of λ.
+            let others = (position / 2) as f64;
+            let radius = component.scale.powf(1.0 / (others + 1.0));
+            resolutions[component.id] = SOLVER_ACCURACY * largest * (others + 1.0) * radius.powf(others);
         }
-        resolutions
+    }
+    resolutions
+}
+
+/// The position of the spectrum that shows why modes could not be grouped.
+pub(super) fn where_shown(cause: &ClusterError) -> Option<usize> {
+    match *cause {
+        ClusterError::Split { at, .. } | ClusterError::NearRealAxis { at, .. } => Some(at),
+        ClusterError::TooMany { .. } => None,
     }
 }

@@ -2,6 +2,7 @@
 
 mod components;
 mod decision;
+mod elements;
 mod evaluations;
 mod record;
 
@@ -57,7 +58,7 @@ impl BuildError {
 
 /// Builds the surrogate of a study on the current rayon thread pool: the same bits for any number of threads.
 ///
-/// Derivatives enter the fit beside the values if the study wants them and the model has them. All components share one
+/// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives enter the fit beside the values if the study wants them and the model has them. All components share one
 /// nested design. Level by level it grows by one step until every component is fitted well enough and, if the study
 /// asks for it, the estimated error of the stability proportion is small enough, or has not fallen while the design
 /// grew by four levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
@@ -86,6 +87,9 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
 ///
 /// As [`build`].
 pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
+    if study.fit.method.is_quadrature() {
+        return elements::build(study, model, observer);
+    }
     let mut fit = ComponentFit::new(study)?;
     let mut evaluations = Evaluations::new(study, model)?;
     let mut levels = Vec::new();

@@ -7,16 +7,45 @@ use crate::fit::{Fitted, Stop};
 use crate::input::Mesh;
 use crate::regression::Gradients;
 use crate::spectrum::{Component, Output};
-use crate::study::{FitMethod, Study};
+use crate::study::{FitMethod, FullExpansion, MultiElement, Solver, Study};
 use crate::surrogate::{
     Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, StopReason, Surrogate, Training,
 };
+
+fn setting(key: &str, value: SettingValue) -> Setting {
+    Setting { key: key.to_owned(), value }
+}
+
+fn number(key: &str, value: f64) -> Setting {
+    setting(key, SettingValue::Number(value))
+}
 
 /// Points of the self-test.
 const SELF_TEST_POINTS: usize = 16;
 
 /// The self-test has the same points in every surrogate of the same dimension.
 const SELF_TEST_SEED: u64 = 0;
+
+/// The surrogate of a mesh, not yet judged: `fitted` has one fit per component for every element.
+pub(super) fn of_elements(
+    study: &Study,
+    mesh: Mesh,
+    outputs: Vec<Output>,
+    fitted: &[Vec<Fitted>],
+    counts: Counts,
+    levels: Vec<u64>,
+) -> Surrogate {
+    let method = &study.fit.method;
+    let training = Training {
+        method: method.name().to_owned(),
+        settings: settings_of(method),
+        design: study.design.kind.name().to_owned(),
+        seed: study.seed,
+        levels,
+        counts,
+    };
+    new(study, mesh, outputs, fitted.iter().flatten(), training)
+}
 
 /// The surrogate of one level, not yet judged.
 pub(super) fn surrogate(
@@ -26,6 +55,18 @@ pub(super) fn surrogate(
     fitted: &[ComponentResult],
     gradients: Option<&[Gradients]>,
     levels: &[u64],
+) -> Surrogate {
+    let training = training(study, fitted, gradients, evaluations.runs().len(), levels.to_vec());
+    let whole = Mesh::whole(study.inputs.dimension());
+    new(study, whole, outputs, fitted.iter().map(|fit| &fit.result), training)
+}
+
+fn new<'a>(
+    study: &Study,
+    mesh: Mesh,
+    outputs: Vec<Output>,
+    fitted: impl Iterator<Item = &'a Fitted>,
+    training: Training,
 ) -> Surrogate {
     let mut components: Vec<&Component> = outputs.iter().flat_map(|output| &output.components).collect();
     components.sort_by_key(|component| component.id);
@@ -37,10 +78,13 @@ pub(super) fn surrogate(
             study_hash: study.study_hash(),
         },
         inputs: study.inputs.clone(),
-        mesh: Mesh::whole(study.inputs.dimension()),
-        expansions: fitted.iter().zip(components).map(|(fit, component)| expansion(&fit.result, component)).collect(),
+        mesh,
+        expansions: fitted
+            .zip(components.into_iter().cycle())
+            .map(|(fit, component)| expansion(fit, component))
+            .collect(),
         outputs,
-        training: training(study, fitted, gradients, evaluations.runs().len(), levels.to_vec()),
+        training,
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         certificates: Vec::new(),
@@ -72,18 +116,8 @@ fn training(
     runs: usize,
     levels: Vec<u64>,
 ) -> Training {
-    let setting = |key: &str, value| Setting { key: key.to_owned(), value };
-    let number = |key: &str, value| setting(key, SettingValue::Number(value));
     let method = &study.fit.method;
-    let mut settings = vec![setting("max_degree", SettingValue::Integer(method.max_degree().into()))];
-    if let FitMethod::Stepwise(stepwise) = method {
-        settings.push(number("q_norm", stepwise.q_norm));
-    }
-    settings.push(number("s2_target", method.s2_target()));
-    if let FitMethod::Stepwise(stepwise) = method {
-        settings.push(number("epsilon_forward", stepwise.epsilon_forward));
-        settings.push(number("epsilon_backward", stepwise.epsilon_backward));
-    }
+    let mut settings = settings_of(method);
     if let Some(tolerance) = study.fit.proportion_tolerance {
         settings.push(number("proportion_tolerance", tolerance));
     }
@@ -108,6 +142,36 @@ fn training(
         levels,
         counts: Counts { values: runs, gradients, failed: 0, final_mesh: runs, direct_computations: runs },
     }
+}
+
+/// The settings of a method as they are in a study.
+fn settings_of(method: &FitMethod) -> Vec<Setting> {
+    let mut settings = vec![setting("max_degree", SettingValue::Integer(method.max_degree().into()))];
+    if let FitMethod::Stepwise(stepwise) = method {
+        settings.push(number("q_norm", stepwise.q_norm));
+    }
+    if let Some(s2_target) = method.s2_target() {
+        settings.push(number("s2_target", s2_target));
+    }
+    match method {
+        FitMethod::Gpc(FullExpansion { solver: Solver::Quadrature, .. }) => {
+            settings.push(setting("solver", SettingValue::Text("quadrature".to_owned())));
+        }
+        FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { oversampling }, .. }) => {
+            settings.push(setting("solver", SettingValue::Text("least-squares".to_owned())));
+            settings.push(number("oversampling", *oversampling));
+        }
+        FitMethod::MultiElement(MultiElement { theta_1, theta_2, gamma, elements, .. }) => {
+            settings.extend([number("theta_1", *theta_1), number("theta_2", *theta_2), number("gamma", *gamma)]);
+            settings.push(setting("elements", SettingValue::Integer(*elements as u64)));
+        }
+        _ => {}
+    }
+    if let FitMethod::Stepwise(stepwise) = method {
+        settings.push(number("epsilon_forward", stepwise.epsilon_forward));
+        settings.push(number("epsilon_backward", stepwise.epsilon_backward));
+    }
+    settings
 }
 
 /// One name if all are equal, else all in the order of the components.

@@ -4,7 +4,9 @@ mod latin_hypercube;
 mod run;
 mod samples;
 mod spread;
+mod tensor_gauss;
 
 pub use latin_hypercube::NestedLatinHypercube;
 pub use run::{Run, RunError, Runner};
 pub use samples::Samples;
+pub use tensor_gauss::TensorGauss;

@@ -2,8 +2,10 @@
 
 pub mod auto;
 mod cross_validation;
+pub mod gpc;
 mod kernel;
 pub mod minimum_norm;
+pub mod multi_element;
 pub mod omp;
 mod prior;
 mod prior_search;

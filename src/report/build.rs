@@ -92,6 +92,13 @@ impl FitReport {
                 _ => None,
             }
         };
+        let is_blind = |fit: &Self| fit.r2.is_some() && fit.s2.is_none();
+        if fits.iter().all(|fit| fit.r2.is_none() || is_blind(fit)) && fits.iter().any(is_blind) {
+            return vec![
+                "no point was left out, so nothing is known of the error between the points; check with pcc compare or certify"
+                    .to_owned(),
+            ];
+        }
         let mut warnings: Vec<String> = fits.iter().filter_map(warning).collect();
         if fits.iter().any(|fit| fit.stop == StopReason::DesignExhausted.describe()) {
             warnings

@@ -62,9 +62,72 @@ pub enum StudyError {
         /// Parameters of the model.
         known: String,
     },
-    /// A setting of the stepwise method beside another method.
-    #[error("{place}: belongs to method = \"stepwise\"; choose that method or remove the key")]
-    KeyOfStepwise {
+    /// A setting of other methods.
+    #[error("{place}: belongs to method = {methods}; choose that method or remove the key")]
+    KeyOfMethod {
+        /// Where.
+        place: Place,
+        /// The methods it belongs to.
+        methods: String,
+    },
+    /// A kind of design that the method cannot take.
+    #[error("{place}: the method does not run the model on \"{kind}\"; use \"{fitting}\" or remove the key")]
+    DesignOfMethod {
+        /// Where.
+        place: Place,
+        /// Kind found.
+        kind: &'static str,
+        /// The kind it takes.
+        fitting: &'static str,
+    },
+    /// A size of a design whose size follows from the degree.
+    #[error("{place}: the method takes {runs} model runs, by its degree; remove the key or change fit.max_degree")]
+    FixedDesign {
+        /// Where.
+        place: Place,
+        /// What it takes.
+        runs: usize,
+    },
+    /// A full expansion needs more runs than the study allows.
+    #[error(
+        "fit.max_degree {degree} with {inputs} inputs takes {runs} model runs, more than design.maximum ({maximum}); lower the \
+         degree, raise the maximum, or choose a sparse method"
+    )]
+    TooManyRuns {
+        /// Degree p.
+        degree: u16,
+        /// Number of inputs.
+        inputs: usize,
+        /// Number of model runs, of one element if there are several.
+        runs: f64,
+        /// What is allowed.
+        maximum: usize,
+    },
+    /// A full expansion is too large for least squares.
+    #[error(
+        "fit.max_degree {degree} with {inputs} inputs and {runs} model runs needs a matrix of more than two gigabytes; lower the \
+         degree or fit.oversampling"
+    )]
+    TooLargeMatrix {
+        /// Degree p.
+        degree: u16,
+        /// Number of inputs.
+        inputs: usize,
+        /// Number of model runs.
+        runs: f64,
+    },
+    /// The number of quadrature nodes has no factor.
+    #[error("{place}: belongs to solver = \"least-squares\"; choose that solver or remove the key")]
+    OversamplingOfQuadrature {
+        /// Where.
+        place: Place,
+    },
+    /// Derivatives with quadrature.
+    #[error(
+        "{place}: quadrature takes values alone; use method = \"gpc\" with solver = \"least-squares\", another method, or remove \
+         the key"
+    )]
+    DerivativesOfQuadrature {
         /// Where.
         place: Place,
     },

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{FitMethod, ModelSettings, Study};
+use super::{FitMethod, FullExpansion, ModelSettings, MultiElement, Solver, Study};
 use crate::digest::sha256;
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
@@ -22,7 +22,19 @@ pub(super) fn study_hash(study: &Study) -> String {
     if let FitMethod::Stepwise(stepwise) = method {
         let _ = write!(text, " {:?}", stepwise.q_norm);
     }
-    let _ = write!(text, " {:?}", method.s2_target());
+    match method {
+        FitMethod::Gpc(FullExpansion { solver: Solver::Quadrature, .. }) => text.push_str(" quadrature"),
+        FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { oversampling }, .. }) => {
+            let _ = write!(text, " least-squares {oversampling:?}");
+        }
+        FitMethod::MultiElement(MultiElement { theta_1, theta_2, gamma, elements, .. }) => {
+            let _ = write!(text, " {theta_1:?} {theta_2:?} {gamma:?} {elements}");
+        }
+        _ => {}
+    }
+    if let Some(s2_target) = method.s2_target() {
+        let _ = write!(text, " {s2_target:?}");
+    }
     if let FitMethod::Stepwise(stepwise) = method {
         let _ = write!(text, " {:?} {:?}", stepwise.epsilon_forward, stepwise.epsilon_backward);
     }

@@ -2,6 +2,7 @@
 
 mod defaults;
 mod error;
+mod fit;
 mod identity;
 mod print;
 mod raw;
@@ -10,7 +11,8 @@ mod validate;
 
 pub use error::{Place, StudyError};
 pub use settings::{
-    Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
+    Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, FullExpansion, ModelSettings, MultiElement,
+    Smooth, Solver, SpectrumSettings, Stepwise,
 };
 
 use crate::input::InputSpace;
@@ -86,7 +88,7 @@ impl Study {
 
     /// Whether fits use derivatives: asked for, or left open for invariants of a model that has them.
     pub fn uses_derivatives(&self) -> bool {
-        self.fit.derivatives.are_used(self.spectrum.target, &self.model)
+        self.fit.use_derivatives(self.spectrum.target, &self.model)
     }
 
     /// Hash of what is asked: model, constants, inputs and spectrum. Two studies with the same hash have the same true

@@ -78,9 +78,15 @@ pub(super) struct Fit {
     pub epsilon_backward: Option<Spanned<f64>>,
     pub proportion_tolerance: Option<Spanned<f64>>,
     pub derivatives: Option<Spanned<Derivatives>>,
+    pub solver: Option<Spanned<String>>,
+    pub oversampling: Option<Spanned<f64>>,
+    pub theta_1: Option<Spanned<f64>>,
+    pub theta_2: Option<Spanned<f64>>,
+    pub gamma: Option<Spanned<f64>>,
+    pub elements: Option<Spanned<i64>>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(untagged, expecting = "derivatives must be \"auto\", true or false")]
 pub(super) enum Derivatives {
     Flag(bool),

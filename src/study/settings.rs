@@ -46,6 +46,8 @@ pub enum DesignKind {
     NestedLhs,
     /// The same with points spread apart.
     NestedMaximinLhs,
+    /// The nodes of a tensor Gauss rule.
+    TensorGauss,
 }
 
 impl DesignKind {
@@ -54,6 +56,7 @@ impl DesignKind {
         match self {
             Self::NestedLhs => "nested-lhs",
             Self::NestedMaximinLhs => "nested-maximin-lhs",
+            Self::TensorGauss => "tensor-gauss",
         }
     }
 }
@@ -63,7 +66,7 @@ impl DesignKind {
 pub struct DesignSettings {
     /// How points are chosen.
     pub kind: DesignKind,
-    /// Number of points of the first level, at least 2.
+    /// Number of points of the first level, at least 2; for methods that fix it, of the whole design, or of each element.
     pub initial: usize,
     /// Points added by each enrichment, at least 1.
     pub step: usize,
@@ -88,6 +91,12 @@ pub struct FitSettings {
     pub proportion_tolerance: Option<f64>,
     /// Whether derivatives of the components enter the fit.
     pub derivatives: Derivatives,
+}
+
+impl FitSettings {
+    pub(super) fn use_derivatives(&self, target: Target, model: &ModelSettings) -> bool {
+        self.method.can_use_derivatives() && self.derivatives.are_used(target, model)
+    }
 }
 
 /// Whether derivatives of the components by the inputs enter a fit beside the values.
@@ -132,6 +141,10 @@ pub enum FitMethod {
     MinimumNorm(Smooth),
     /// For each component the better of pursuit and minimum norm.
     Auto(Smooth),
+    /// A full expansion.
+    Gpc(FullExpansion),
+    /// Full expansions on elements.
+    MultiElement(MultiElement),
 }
 
 impl FitMethod {
@@ -142,6 +155,8 @@ impl FitMethod {
             Self::Omp(_) => "omp",
             Self::MinimumNorm(_) => "minimum-norm",
             Self::Auto(_) => "auto",
+            Self::Gpc(_) => "gpc",
+            Self::MultiElement(_) => "me-gpc",
         }
     }
 
@@ -150,16 +165,74 @@ impl FitMethod {
         match self {
             Self::Stepwise(settings) => settings.max_degree,
             Self::Omp(settings) | Self::MinimumNorm(settings) | Self::Auto(settings) => settings.max_degree,
+            Self::Gpc(settings) => settings.max_degree,
+            Self::MultiElement(settings) => settings.max_degree,
         }
     }
 
-    /// S² at which a component is accurate enough.
-    pub fn s2_target(&self) -> f64 {
+    /// S² at which a component is accurate enough; `None` for full expansions, which have nothing to choose.
+    pub fn s2_target(&self) -> Option<f64> {
         match self {
-            Self::Stepwise(settings) => settings.s2_target,
-            Self::Omp(settings) | Self::MinimumNorm(settings) | Self::Auto(settings) => settings.s2_target,
+            Self::Stepwise(settings) => Some(settings.s2_target),
+            Self::Omp(settings) | Self::MinimumNorm(settings) | Self::Auto(settings) => Some(settings.s2_target),
+            Self::Gpc(_) | Self::MultiElement(_) => None,
         }
     }
+
+    /// Whether coefficients are integrals over a tensor Gauss rule.
+    pub fn is_quadrature(&self) -> bool {
+        match self {
+            Self::Gpc(settings) => settings.solver == Solver::Quadrature,
+            Self::MultiElement(_) => true,
+            _ => false,
+        }
+    }
+
+    /// Whether the degree says where the model is run, and how often.
+    pub fn has_fixed_design(&self) -> bool {
+        matches!(self, Self::Gpc(_) | Self::MultiElement(_))
+    }
+
+    /// Whether a fit can take derivatives beside values.
+    pub fn can_use_derivatives(&self) -> bool {
+        !self.is_quadrature()
+    }
+}
+
+/// Settings of a full expansion of total degree (section 3.1 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+pub struct FullExpansion {
+    /// p, at least 1.
+    pub max_degree: u16,
+    /// How its coefficients are found.
+    pub solver: Solver,
+}
+
+/// How the coefficients of a full expansion are found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Solver {
+    /// Projection by a tensor Gauss rule with p + 1 nodes per input.
+    Quadrature,
+    /// Least squares on a Latin hypercube.
+    LeastSquares {
+        /// Equations per term, at least 1: values, and derivatives if there are any.
+        oversampling: f64,
+    },
+}
+
+/// Settings of the multi-element expansion (section 3.2 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+pub struct MultiElement {
+    /// p of the expansion in each element, at least 1.
+    pub max_degree: u16,
+    /// θ₁: elements whose decay rate η, to the power γ and times their probability, is at least this are divided; not negative.
+    pub theta_1: f64,
+    /// θ₂: inputs whose share of the highest order is at least this part of the largest share are halved; in (0, 1\].
+    pub theta_2: f64,
+    /// γ, in (0, 1\].
+    pub gamma: f64,
+    /// Elements at most.
+    pub elements: usize,
 }
 
 /// Settings of the stepwise construction of a sparse basis (section 3.3.3 of the paper).

@@ -5,32 +5,16 @@ use std::ops::RangeInclusive;
 use toml::Spanned;
 
 use super::error::{Place, StudyError};
-use super::settings::{
-    Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, Smooth, SpectrumSettings, Stepwise,
-};
+use super::settings::{DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, SpectrumSettings};
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::input::{Input, InputSpace, Marginal, Uniform};
 use crate::model::{CLUTCH_PARAMETERS, Parameter};
 use crate::spectrum::{Modes, Target};
 
-/// Degrees above this are of no use for functions that a design can resolve.
-const HIGHEST_DEGREE: i64 = 100;
-
 /// Design sizes above this need more memory for the regression than a workstation has.
 const LARGEST_DESIGN: i64 = 1_000_000;
 
-const DESIGNS: [DesignKind; 2] = [DesignKind::NestedLhs, DesignKind::NestedMaximinLhs];
-
-/// A method that takes no settings of the stepwise one.
-type SmoothMethod = fn(Smooth) -> FitMethod;
-
-/// The fitting methods; none of the smooth ones for "stepwise".
-const METHODS: [(&str, Option<SmoothMethod>); 4] = [
-    ("stepwise", None),
-    ("auto", Some(FitMethod::Auto)),
-    ("minimum-norm", Some(FitMethod::MinimumNorm)),
-    ("omp", Some(FitMethod::Omp)),
-];
+const DESIGNS: [DesignKind; 3] = [DesignKind::NestedLhs, DesignKind::NestedMaximinLhs, DesignKind::TensorGauss];
 
 const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
@@ -58,17 +42,17 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     let dimension = inputs.dimension();
     let spectrum = lines.spectrum(raw.spectrum)?;
     let model = ModelSettings::Clutch { constants };
-    let fit = lines.fit(raw.fit, spectrum.target, &model)?;
-    let derivatives = fit.derivatives.are_used(spectrum.target, &model);
-    let design = lines.design(raw.design, spectrum.target, dimension, derivatives)?;
+    let fit = lines.fit(raw.fit, spectrum.target, dimension, &model)?;
+    let derivatives = fit.use_derivatives(spectrum.target, &model);
+    let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
     let max_degree = fit.method.max_degree();
     let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
-    if numbers > LARGEST_TABLES {
+    if !fit.method.has_fixed_design() && numbers > LARGEST_TABLES {
         return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
     }
     let equations = design.maximum.saturating_mul(1 + dimension);
-    let is_stepwise = matches!(fit.method, FitMethod::Stepwise(_));
-    if derivatives && !is_stepwise && equations > MOST_EQUATIONS {
+    let is_least_squares = matches!(fit.method, FitMethod::Stepwise(_) | FitMethod::Gpc(_));
+    if derivatives && !is_least_squares && equations > MOST_EQUATIONS {
         let (inputs, maximum, most) = (dimension, design.maximum, MOST_EQUATIONS);
         return Err(StudyError::TooManyEquations { inputs, maximum, equations, most, fitting: most / (1 + inputs) });
     }
@@ -76,12 +60,12 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
 }
 
 /// Knows the text, so that errors can name lines.
-struct Lines<'a> {
+pub(super) struct Lines<'a> {
     text: &'a str,
 }
 
 impl Lines<'_> {
-    fn place<T>(&self, key: impl Into<String>, value: &Spanned<T>) -> Place {
+    pub(super) fn place<T>(&self, key: impl Into<String>, value: &Spanned<T>) -> Place {
         let before = &self.text.as_bytes()[..value.span().start.min(self.text.len())];
         Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
     }
@@ -94,14 +78,19 @@ impl Lines<'_> {
         }
     }
 
-    fn integer(&self, key: &str, value: Spanned<i64>, range: RangeInclusive<i64>) -> Result<i64, StudyError> {
+    pub(super) fn integer(
+        &self,
+        key: &str,
+        value: Spanned<i64>,
+        range: RangeInclusive<i64>,
+    ) -> Result<i64, StudyError> {
         if range.contains(value.get_ref()) {
             return Ok(value.into_inner());
         }
         Err(self.out_of_range(key, &value, format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
-    fn number(
+    pub(super) fn number(
         &self,
         key: &str,
         value: Option<Spanned<f64>>,
@@ -116,7 +105,12 @@ impl Lines<'_> {
         }
     }
 
-    fn word<T: Copy>(&self, key: &str, word: &Spanned<String>, known: &[(&str, T)]) -> Result<T, StudyError> {
+    pub(super) fn word<T: Copy>(
+        &self,
+        key: &str,
+        word: &Spanned<String>,
+        known: &[(&str, T)],
+    ) -> Result<T, StudyError> {
         known.iter().find(|(name, _)| name == word.get_ref()).map(|&(_, meaning)| meaning).ok_or_else(|| {
             let names: Vec<_> = known.iter().map(|(name, _)| format!("\"{name}\"")).collect();
             StudyError::UnknownWord {
@@ -233,23 +227,37 @@ impl Lines<'_> {
         raw: raw::Design,
         target: Target,
         inputs: usize,
+        fit: &FitSettings,
         derivatives: bool,
     ) -> Result<DesignSettings, StudyError> {
+        let kind_place = raw.kind.as_ref().map(|word| self.place("design.kind", word));
+        let default_kind = if fit.method.is_quadrature() { DesignKind::TensorGauss } else { defaults::design(target) };
         let kind = match raw.kind {
             Some(word) => self.word("design.kind", &word, &DESIGNS.map(|kind| (kind.name(), kind)))?,
-            None => defaults::design(target),
+            None => default_kind,
         };
-        let size = |key: &str, value: Option<Spanned<i64>>, smallest: i64, default: usize| match value {
-            Some(value) => self.integer(key, value, smallest..=LARGEST_DESIGN).map(|size| size as usize),
-            None => Ok(default),
-        };
+        match kind_place {
+            Some(place) if (kind == DesignKind::TensorGauss) != fit.method.is_quadrature() => {
+                return Err(StudyError::DesignOfMethod { place, kind: kind.name(), fitting: default_kind.name() });
+            }
+            _ => {}
+        }
         let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
+        let default_maximum = defaults::maximum(target, inputs, derivatives, &fit.method);
+        let maximum = self.size("design.maximum", raw.maximum, 2, default_maximum)?;
+        if let Some(runs) = self.fixed_runs(fit, inputs, derivatives, maximum)? {
+            for (key, value) in [("design.initial", raw.initial), ("design.step", raw.step)] {
+                if let Some(value) = value {
+                    return Err(StudyError::FixedDesign { place: self.place(key, &value), runs });
+                }
+            }
+            return Ok(DesignSettings { kind, initial: runs, step: runs, maximum });
+        }
         let default_initial = defaults::initial(target, inputs, derivatives);
         let default_step = defaults::step(target, inputs, derivatives);
         let initial_was_given = raw.initial.is_some();
-        let maximum = size("design.maximum", raw.maximum, 2, defaults::maximum(target, inputs, derivatives))?;
-        let initial = size("design.initial", raw.initial, 2, default_initial.min(maximum))?;
-        let step = size("design.step", raw.step, 1, default_step)?;
+        let initial = self.size("design.initial", raw.initial, 2, default_initial.min(maximum))?;
+        let step = self.size("design.step", raw.step, 1, default_step)?;
         match maximum_place {
             Some(place) if initial_was_given && initial > maximum => Err(StudyError::OutOfRange {
                 place,
@@ -260,81 +268,7 @@ impl Lines<'_> {
         }
     }
 
-    fn fit(&self, raw: raw::Fit, target: Target, model: &ModelSettings) -> Result<FitSettings, StudyError> {
-        let derivatives = match raw.derivatives {
-            Some(derivatives) => self.derivatives(derivatives, target)?,
-            None => Derivatives::Auto,
-        };
-        let share = |value: f64| value > 0.0 && value <= 1.0;
-        let in_share = "a number above 0 and at most 1";
-        let max_degree = match raw.max_degree {
-            Some(value) => self.integer("fit.max_degree", value, 1..=HIGHEST_DEGREE)? as u16,
-            None => defaults::MAX_DEGREE,
-        };
-        let s2_target = self.number("fit.s2_target", raw.s2_target, defaults::S2_TARGET, in_share, share)?;
-        let method = match &raw.method {
-            Some(word) => self.word("fit.method", word, &METHODS)?,
-            None if target == Target::Invariants => Some(FitMethod::Auto as SmoothMethod),
-            None => None,
-        };
-        let default_tolerance = defaults::proportion_tolerance(derivatives.are_used(target, model), method.is_none());
-        let proportion_tolerance = match raw.proportion_tolerance {
-            Some(value) => {
-                let (resolved, expected) = (|value| (1e-5..=1.0).contains(&value), "a number from 1e-5 to 1");
-                Some(self.number("fit.proportion_tolerance", Some(value), 1.0, expected, resolved)?)
-            }
-            None => (target == Target::Invariants).then_some(default_tolerance),
-        };
-        let (norm, forward, backward) = (raw.q_norm, raw.epsilon_forward, raw.epsilon_backward);
-        let method = match method {
-            None => FitMethod::Stepwise(self.stepwise(max_degree, s2_target, norm, forward, backward)?),
-            Some(smooth_method) => {
-                let keys = ["fit.q_norm", "fit.epsilon_forward", "fit.epsilon_backward"];
-                for (key, value) in keys.into_iter().zip([norm, forward, backward]) {
-                    if let Some(value) = value {
-                        return Err(StudyError::KeyOfStepwise { place: self.place(key, &value) });
-                    }
-                }
-                smooth_method(Smooth { max_degree, s2_target })
-            }
-        };
-        Ok(FitSettings { method, proportion_tolerance, derivatives })
-    }
-
-    fn derivatives(&self, raw: Spanned<raw::Derivatives>, target: Target) -> Result<Derivatives, StudyError> {
-        let place = self.place("fit.derivatives", &raw);
-        match raw.into_inner() {
-            raw::Derivatives::Flag(true) if target == Target::Eigenvalues => {
-                Err(StudyError::DerivativesOfEigenvalues { place })
-            }
-            raw::Derivatives::Flag(true) => Ok(Derivatives::Always),
-            raw::Derivatives::Flag(false) => Ok(Derivatives::Never),
-            raw::Derivatives::Word(word) if word == "auto" => Ok(Derivatives::Auto),
-            raw::Derivatives::Word(word) => {
-                let expected = "\"auto\", true or false".to_owned();
-                Err(StudyError::OutOfRange { place, found: format!("{word:?}"), expected })
-            }
-        }
-    }
-
-    fn stepwise(
-        &self,
-        max_degree: u16,
-        s2_target: f64,
-        q_norm: Option<Spanned<f64>>,
-        forward: Option<Spanned<f64>>,
-        backward: Option<Spanned<f64>>,
-    ) -> Result<Stepwise, StudyError> {
-        let share = |value: f64| value > 0.0 && value <= 1.0;
-        let cutoff = |value: f64| (0.0..1.0).contains(&value);
-        let (in_share, in_cutoff) = ("a number above 0 and at most 1", "a number from 0 to below 1");
-        let epsilon = |key, value, default| self.number(key, value, default, in_cutoff, cutoff);
-        Ok(Stepwise {
-            max_degree,
-            s2_target,
-            q_norm: self.number("fit.q_norm", q_norm, defaults::Q_NORM, in_share, share)?,
-            epsilon_forward: epsilon("fit.epsilon_forward", forward, defaults::EPSILON_FORWARD)?,
-            epsilon_backward: epsilon("fit.epsilon_backward", backward, defaults::EPSILON_BACKWARD)?,
-        })
+    fn size(&self, key: &str, value: Option<Spanned<i64>>, least: i64, default: usize) -> Result<usize, StudyError> {
+        value.map_or(Ok(default), |value| Ok(self.integer(key, value, least..=LARGEST_DESIGN)? as usize))
     }
 }
