@@ -51,6 +51,7 @@ pub mod random;
 pub mod reference;
 pub mod regression;
 pub mod report;
+pub mod reproduce;
 pub mod spectrum;
 pub mod statistics;
 pub mod study;

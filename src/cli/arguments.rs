@@ -74,6 +74,20 @@ pub(super) enum Command {
     /// Show what is inside a surrogate file
     Inspect(Inspect),
 
+    /// Put a surrogate on one page: an HTML file with its answer, pictures and tables
+    ///
+    /// Samples the surrogate and draws densities, modes over the inputs that matter most, Sobol' indices and the decay of its
+    /// coefficients. With --study it also runs the model, and shows where the two differ. The page stands alone: no scripts, nothing
+    /// to load.
+    Report(Report),
+
+    /// Reproduce the paper: its table 2 and figures 3 and 4, and what lies beyond
+    ///
+    /// Builds the clutch by full, multi-element and sparse expansions of its eigenvalues and of invariants, for one to eight
+    /// uncertain parameters, compares all with the model on the same points, and writes table2.csv, table2.md, the figures as SVG
+    /// and report.html. Takes a minute or two. Rows that are done are kept if it is interrupted.
+    Reproduce(Reproduce),
+
     /// Convert a surrogate between binary (.pcc) and JSON (.json), without loss
     Convert(Convert),
 
@@ -235,6 +249,62 @@ pub(super) struct Inspect {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct Report {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Study it was built from: the model is run and compared with the surrogate
+    #[arg(long, value_name = "STUDY")]
+    pub study: Option<PathBuf>,
+
+    /// HTML file
+    #[arg(short, long, value_name = "FILE", default_value = "report.html")]
+    pub output: PathBuf,
+
+    /// Number of samples of the surrogate, as in 1000000 or 1e6
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, default_value = "1000000")]
+    pub samples: u64,
+
+    /// Number of model runs with --study
+    #[arg(long, value_name = "M", value_parser = run_count, default_value = "10000")]
+    pub runs: u64,
+
+    /// Seed of all points
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Reproduce {
+    /// Only this part
+    #[arg(long, value_enum)]
+    pub only: Option<Part>,
+
+    /// Folder for the files
+    #[arg(short, long, value_name = "DIR", default_value = "reproduction")]
+    pub output: PathBuf,
+
+    /// Seed of the points, and of the first of five designs
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
+    /// Model runs to compare with, for each number of uncertain parameters
+    #[arg(long, value_name = "N", value_parser = run_count, default_value = "10000")]
+    pub runs: u64,
+}
+
+/// A part of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Part {
+    /// All methods compared
+    Table2,
+    /// Coalescence of the two modes
+    Figure3,
+    /// Growth rates by model and surrogate
+    Figure4,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct Convert {
     /// Surrogate file to read, binary or JSON
     pub input: PathBuf,
@@ -261,6 +331,15 @@ fn sample_count(text: &str) -> Result<u64, String> {
         Some(0) => Err("use at least 1".to_owned()),
         Some(count) => Ok(count),
         None => Err("use a whole number from 1 to 9e15, like 1000000 or 1e6".to_owned()),
+    }
+}
+
+/// As many model runs as are kept in memory.
+fn run_count(text: &str) -> Result<u64, String> {
+    const MOST: u64 = 10_000_000;
+    match sample_count(text)? {
+        count if count <= MOST => Ok(count),
+        _ => Err("use at most 10000000: the answers are kept in memory".to_owned()),
     }
 }
 

@@ -83,6 +83,8 @@ fn run(arguments: Arguments) -> anyhow::Result<Ending> {
         Command::Compare(options) => commands::compare(&context, &options),
         Command::Certify(options) => commands::certify(&context, &options),
         Command::Inspect(options) => commands::inspect(&context, &options),
+        Command::Report(options) => commands::report(&context, &options),
+        Command::Reproduce(options) => commands::reproduce(&context, &options),
         Command::Convert(options) => commands::convert(&context, &options),
         Command::Completions { shell } => commands::completions(shell),
     })

@@ -4,6 +4,7 @@ use super::compare::{Comparison, mode_errors};
 use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
 use crate::eval::Plan;
 use crate::input::random_point;
+use crate::parallel::try_map;
 use crate::progress::Observer;
 use crate::random::Purpose;
 use crate::spectrum::Block;
@@ -11,8 +12,9 @@ use crate::study::Study;
 use crate::surrogate::Surrogate;
 use nalgebra::Complex;
 
-/// Points of a surrogate that are evaluated together.
-const CHUNK: u64 = 4096;
+/// Points of a surrogate that are evaluated together, and how many such parts are held in memory.
+const CHUNK: usize = 4096;
+const CHUNKS_IN_FLIGHT: usize = 64;
 
 /// What the model answers at samples 0 … n − 1 of a study's input space: the points of [`crate::eval::monte_carlo`].
 #[derive(Debug, Clone)]
@@ -73,6 +75,16 @@ impl<'a> ModelSample<'a> {
         &self.max_re
     }
 
+    /// max Re λ of the model over those of its modes that have these ranks, point by point, in 1/s.
+    pub fn max_re_over(&self, modes: &[usize]) -> Vec<f64> {
+        let chosen = self.modes.iter().zip(&self.eigenvalues).filter(|(mode, _)| modes.contains(mode));
+        let mut largest = vec![f64::NEG_INFINITY; self.len()];
+        for (_, lambdas) in chosen {
+            largest.iter_mut().zip(lambdas).for_each(|(largest, lambda)| *largest = lambda.re.max(*largest));
+        }
+        largest
+    }
+
     /// Standardized coordinates of point `index`.
     pub fn point(&self, index: usize) -> Vec<f64> {
         let mut point = vec![0.0; self.study.inputs.dimension()];
@@ -120,10 +132,14 @@ impl<'a> ModelSample<'a> {
         if surrogate.inputs != self.study.inputs {
             return Err(ReferenceError::other_problem(surrogate, self.study));
         }
-        for start in (0..count).step_by(CHUNK as usize) {
-            let points: Vec<Vec<f64>> =
-                (start..count.min(start + CHUNK as usize)).map(|index| self.point(index)).collect();
-            consume(start, surrogate_block(surrogate, plan, &points)?);
+        for first in (0..count).step_by(CHUNK * CHUNKS_IN_FLIGHT) {
+            let end = count.min(first + CHUNK * CHUNKS_IN_FLIGHT);
+            let blocks = try_map((end - first).div_ceil(CHUNK), |chunk| {
+                let start = first + chunk * CHUNK;
+                let points: Vec<Vec<f64>> = (start..end.min(start + CHUNK)).map(|index| self.point(index)).collect();
+                surrogate_block(surrogate, plan, &points)
+            })?;
+            blocks.into_iter().enumerate().for_each(|(chunk, block)| consume(first + chunk * CHUNK, block));
         }
         Ok(())
     }

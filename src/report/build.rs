@@ -1,7 +1,7 @@
 //! What a build spent and how well each component is fitted.
 
 use super::table::{Align, Table, count, significant};
-use crate::surrogate::{SettingValue, StopReason, Surrogate};
+use crate::surrogate::{Expansion, SettingValue, StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
@@ -32,6 +32,10 @@ pub struct BuildReport {
     pub direct_computations: u64,
     /// Runs whose derivatives entered the fit.
     pub runs_with_derivatives: u64,
+    /// Elements, each with expansions of its own.
+    pub elements: usize,
+    /// Model runs of the final mesh of elements, those of divided ones left out.
+    pub final_mesh_computations: u64,
     /// Number of points of each design level.
     pub levels: Vec<u64>,
     /// Fit of every component.
@@ -126,6 +130,13 @@ impl FitReport {
             ));
         }
         warnings.extend(Self::distrusted(surrogate));
+        let is_exhausted = |expansion: &Expansion| expansion.stop == StopReason::DesignExhausted;
+        if surrogate.training.method == "me-gpc" && surrogate.expansions.iter().any(is_exhausted) {
+            warnings.push(
+                "elements that fit.theta_1 asks to divide are left; raise fit.elements or design.maximum for more"
+                    .to_owned(),
+            );
+        }
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if spectrum.modes leaves out modes that can become unstable, \
@@ -199,6 +210,8 @@ impl BuildReport {
             seed: surrogate.training.seed,
             direct_computations: surrogate.training.counts.direct_computations,
             runs_with_derivatives: surrogate.training.counts.gradients,
+            elements: surrogate.mesh.elements().len(),
+            final_mesh_computations: surrogate.training.counts.final_mesh,
             levels: surrogate.training.levels.clone(),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
@@ -228,10 +241,14 @@ impl fmt::Display for BuildReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} model runs{} (design levels {}), {:.2} s, seed {}\n",
+            "{}: {} model runs{}{} (design levels {}), {:.2} s, seed {}\n",
             self.study,
             count(self.direct_computations),
             with_derivatives(self.runs_with_derivatives, self.direct_computations),
+            match self.elements {
+                1 => String::new(),
+                many => format!(", {} in the final mesh of {many} elements", count(self.final_mesh_computations)),
+            },
             level_list(&self.levels),
             self.elapsed_seconds,
             self.seed

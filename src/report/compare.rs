@@ -141,6 +141,12 @@ impl fmt::Display for CompareReport {
             percentage(self.largest_mean_error_percent),
             percentage(self.largest_variance_error_percent)
         )?;
+        writeln!(f, "{}re in 1/s, im in rad/s; variances in their squares", self.component_table())
+    }
+}
+
+impl CompareReport {
+    pub(super) fn component_table(&self) -> Table {
         let right = Align::Right;
         let mut table = Table::new(&[
             ("component", Align::Left),
@@ -162,6 +168,6 @@ impl fmt::Display for CompareReport {
                 percentage(component.variance_error_percent),
             ]);
         }
-        writeln!(f, "{table}re in 1/s, im in rad/s; variances in their squares")
+        table
     }
 }

@@ -315,7 +315,7 @@ impl EvalReport {
         at(0.025).zip(at(0.975))
     }
 
-    fn mode_table(&self) -> Table {
+    pub(super) fn mode_table(&self) -> Table {
         let right = Align::Right;
         let mut table = Table::new(&[
             ("mode", Align::Left),

@@ -38,6 +38,10 @@ pub struct InspectReport {
     pub direct_computations: u64,
     /// Runs whose derivatives entered the fit.
     pub runs_with_derivatives: u64,
+    /// Elements, each with expansions of its own.
+    pub elements: usize,
+    /// Model runs of the final mesh of elements, those of divided ones left out.
+    pub final_mesh_computations: u64,
     /// Runs that failed.
     pub failed_runs: u64,
     /// Fitting method.
@@ -115,6 +119,8 @@ impl InspectReport {
             unknown_sections: artifact.unknown_sections.clone(),
             direct_computations: surrogate.training.counts.direct_computations,
             runs_with_derivatives: surrogate.training.counts.gradients,
+            elements: surrogate.mesh.elements().len(),
+            final_mesh_computations: surrogate.training.counts.final_mesh,
             failed_runs: surrogate.training.counts.failed,
             method: surrogate.training.method.clone(),
             settings: surrogate.training.settings.iter().map(setting).collect(),
@@ -136,6 +142,9 @@ impl InspectReport {
     fn estimated_error(&self) -> String {
         match self.estimated_error_percent {
             Some(error) => format!("estimated error {} %", significant(error, 2)),
+            None if self.components.iter().all(|fit| fit.s2.is_none()) => {
+                "error not estimated, because no point was left out".to_owned()
+            }
             None => "error not estimated, which takes two design levels".to_owned(),
         }
     }
@@ -177,10 +186,27 @@ impl fmt::Display for InspectReport {
             self.format,
             count(self.bytes)
         )?;
+        for (name, fact) in self.facts() {
+            writeln!(f, "  {name:<14} {fact}")?;
+        }
+        for certificate in &self.certificates {
+            writeln!(f, "  {:<14} {certificate}", "certificate")?;
+        }
+        for kind in &self.unknown_sections {
+            writeln!(f, "  {:<14} of kind {kind}, skipped: this pcc does not know it", "section")?;
+        }
+        write!(f, "\n{}\n{}", self.input_table(), FitReport::table(&self.components))?;
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
+    }
+}
+
+impl InspectReport {
+    /// What there is to say in words.
+    pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let settings: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key} {value}")).collect();
         let modes: Vec<String> = self.modes.iter().map(usize::to_string).collect();
         let test = if self.self_test_holds() { "holds" } else { "FAILS" };
-        let facts = [
+        let mut facts = vec![
             ("study", self.study.clone()),
             ("built by", format!("pcc {}", self.tool_version)),
             (
@@ -201,15 +227,15 @@ impl fmt::Display for InspectReport {
             ("problem hash", self.problem_hash.clone()),
             ("content id", self.content_id.clone()),
         ];
-        for (name, fact) in facts {
-            writeln!(f, "  {name:<14} {fact}")?;
+        if self.elements > 1 {
+            let mesh =
+                format!("{}, {} model runs in the final mesh", self.elements, count(self.final_mesh_computations));
+            facts.insert(5, ("elements", mesh));
         }
-        for certificate in &self.certificates {
-            writeln!(f, "  {:<14} {certificate}", "certificate")?;
-        }
-        for kind in &self.unknown_sections {
-            writeln!(f, "  {:<14} of kind {kind}, skipped: this pcc does not know it", "section")?;
-        }
+        facts
+    }
+
+    pub(super) fn input_table(&self) -> Table {
         let right = Align::Right;
         let mut inputs = Table::new(&[
             ("input", Align::Left),
@@ -222,7 +248,6 @@ impl fmt::Display for InspectReport {
             let (lower, upper) = (significant(input.lower, 6), significant(input.upper, 6));
             inputs.row([&input.name, input.distribution, &lower, &upper, input.family]);
         }
-        write!(f, "\n{inputs}\n{}", FitReport::table(&self.components))?;
-        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
+        inputs
     }
 }

@@ -2,11 +2,16 @@
 
 mod build;
 mod certify;
+mod charts;
 mod compare;
 mod eval;
 mod inspect;
+mod page;
+mod paper_charts;
+mod reproduction;
 mod sensitivity;
 mod sureness;
+mod surrogate_page;
 mod table;
 
 pub use build::{BuildReport, FitReport};
@@ -14,4 +19,6 @@ pub use certify::CertifyReport;
 pub use compare::CompareReport;
 pub use eval::EvalReport;
 pub use inspect::InspectReport;
+pub use reproduction::{figure_sheets, table_2};
+pub use surrogate_page::{SurrogatePage, Validation};
 pub use table::{Align, Table, count, significant};

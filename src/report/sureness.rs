@@ -67,40 +67,47 @@ fn percent(share: f64) -> String {
     format!("{:.3} %", 100.0 * share)
 }
 
-impl fmt::Display for Sureness {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Sureness {
+    /// The three lines: what each is about, and what it says.
+    pub(super) fn facts(&self) -> [(&'static str, String); 3] {
         let range = |interval: &Interval| format!("{} to {}", percent(interval.lower), percent(interval.upper));
         let level = |interval: &Interval| format!("{:.0} %", 100.0 * interval.level);
         let Self { interval, surrogate_band, verified_bound, .. } = self;
-        writeln!(
-            f,
-            "  sampling interval      {}   {}, from {} samples",
-            range(interval),
-            level(interval),
-            count(self.samples)
-        )?;
-        match (surrogate_band, self.estimated_error_percent) {
-            (None, _) => writeln!(f, "  surrogate band         unknown: no point could be left out")?,
+        let sampling = format!("{}   {}, from {} samples", range(interval), level(interval), count(self.samples));
+        let band = match (surrogate_band, self.estimated_error_percent) {
+            (None, None) => "unknown: no point could be left out".to_owned(),
+            (None, Some(error)) => {
+                format!(
+                    "unknown: no point could be left out; at least {} % of the proportion",
+                    super::significant(error, 2)
+                )
+            }
             (Some(band), error) => {
                 let error = error.map_or(String::new(), |error| {
                     format!("; estimated error {} % of the proportion", super::significant(error, 2))
                 });
-                writeln!(f, "  surrogate band         {}   {} of points left out{error}", range(band), level(band))?;
+                format!("{}   {} of points left out{error}", range(band), level(band))
             }
-        }
-        match verified_bound {
-            None => writeln!(f, "  verified bound         none; `pcc certify` makes one from fresh model runs"),
+        };
+        let verified = match verified_bound {
+            None => "none; `pcc certify` makes one from fresh model runs".to_owned(),
             Some(VerifiedBound { bound, samples, seed, certificates }) => {
                 let others =
                     if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
-                writeln!(
-                    f,
-                    "  verified bound         {}   {}, {} fresh model runs, seed {seed}{others}",
+                format!(
+                    "{}   {}, {} fresh model runs, seed {seed}{others}",
                     range(bound),
                     level(bound),
                     count(*samples)
                 )
             }
-        }
+        };
+        [("sampling interval", sampling), ("surrogate band", band), ("verified bound", verified)]
+    }
+}
+
+impl fmt::Display for Sureness {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.facts().iter().try_for_each(|(name, fact)| writeln!(f, "  {name:<22} {fact}"))
     }
 }

@@ -40,6 +40,37 @@ impl Table {
         row.resize(self.aligns.len(), String::new());
         self.rows.push(row);
     }
+
+    /// How each column is aligned.
+    pub fn aligns(&self) -> &[Align] {
+        &self.aligns
+    }
+
+    /// All rows, the column heads first.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
+    /// The table in Markdown.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc::report::{Align, Table};
+    /// let mut table = Table::new(&[("mode", Align::Left), ("growth 1/s", Align::Right)]);
+    /// table.row(["3|4", "-11.7"]);
+    /// assert_eq!(table.to_markdown(), "| mode | growth 1/s |\n|---|--:|\n| 3\\|4 | -11.7 |\n");
+    /// ```
+    pub fn to_markdown(&self) -> String {
+        let line = |row: &[String]| {
+            let cells: Vec<String> = row.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            format!("| {} |\n", cells.join(" | "))
+        };
+        let rule = |align: &Align| if *align == Align::Left { "---" } else { "--:" };
+        let rules: Vec<&str> = self.aligns.iter().map(rule).collect();
+        let body: String = self.rows[1..].iter().map(|row| line(row)).collect();
+        format!("{}|{}|\n{body}", line(&self.rows[0]), rules.join("|"))
+    }
 }
 
 impl fmt::Display for Table {

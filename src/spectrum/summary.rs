@@ -120,6 +120,14 @@ impl Block {
         self.max_re.append(&mut other.max_re);
     }
 
+    /// The first `count` samples.
+    pub fn first(&self, count: usize) -> Self {
+        let lists = |lists: &[Vec<f64>]| lists.iter().map(|list| list[..count.min(list.len())].to_vec()).collect();
+        let lambdas = self.eigenvalues.iter().map(|list| list[..count.min(list.len())].to_vec()).collect();
+        let max_re = self.max_re[..count.min(self.max_re.len())].to_vec();
+        Self { components: lists(&self.components), eigenvalues: lambdas, max_re }
+    }
+
     /// The first sample whose max Re λ is not finite, because a component overflowed.
     pub fn first_not_finite(&self) -> Option<usize> {
         self.max_re.iter().position(|max_re| !max_re.is_finite())

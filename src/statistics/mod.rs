@@ -1,9 +1,11 @@
 //! Estimates from samples: proportions with their intervals, bounds that survive a wrong surrogate, moments that merge.
 
+mod density;
 mod discordance;
 mod moments;
 mod proportion;
 
+pub use density::density;
 pub use discordance::Discordance;
 pub use moments::Moments;
 pub use proportion::{Interval, Proportion};

@@ -7,6 +7,8 @@ mod convert;
 mod eval;
 mod inspect;
 mod reference;
+mod report;
+mod reproduce;
 mod run;
 
 pub(super) use build::build;
@@ -16,6 +18,8 @@ pub(super) use convert::convert;
 pub(super) use eval::eval;
 pub(super) use inspect::inspect;
 pub(super) use reference::reference;
+pub(super) use report::report;
+pub(super) use reproduce::reproduce;
 pub(super) use run::run;
 
 use super::arguments::Arguments;
@@ -66,6 +70,23 @@ fn keep_other_files(output: &Path) -> anyhow::Result<()> {
     }
     Ok(())
 }
+
+/// Refuses to replace a file that is no page of pcc by one.
+fn keep_other_pages(output: &Path) -> anyhow::Result<()> {
+    if !output.is_file() {
+        return Ok(());
+    }
+    let mut start = Vec::new();
+    let read = File::open(output).and_then(|file| file.take(1024).read_to_end(&mut start));
+    let is_ours = start.windows(PAGE_MARK.len()).any(|window| window == PAGE_MARK);
+    if read.is_ok() && !start.is_empty() && !is_ours {
+        bail!("{}: exists and is no page made by pcc; name another output, or remove it first", output.display());
+    }
+    Ok(())
+}
+
+/// What every page of pcc says near its start.
+const PAGE_MARK: &[u8] = b"<meta name=\"generator\" content=\"pcc ";
 
 fn read_study(path: &Path) -> anyhow::Result<Study> {
     let mut bytes = Vec::new();

@@ -1,0 +1,111 @@
+//! `pcc report`
+
+use super::super::arguments::Report;
+use super::super::{Context, Ending};
+use super::eval::sample;
+use super::{interruptible, keep_inputs, keep_other_pages, read_study, read_surrogate};
+use crate::artifact::{check_writable, save};
+use crate::eval::{Plan, evaluate_points};
+use crate::input::random_point;
+use crate::random::Purpose;
+use crate::reference::ModelSample;
+use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
+use crate::spectrum::Block;
+use crate::surrogate::Surrogate;
+use anyhow::bail;
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+use std::time::Instant;
+
+/// Points of the surrogate that are kept for pictures without a study.
+const POINTS: usize = 20_000;
+
+pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::Result<Ending> {
+    let artifact = read_surrogate(&options.surrogate)?;
+    let study = options.study.as_deref().map(read_study).transpose()?;
+    let inputs: Vec<&Path> =
+        [Some(options.surrogate.as_path()), options.study.as_deref()].into_iter().flatten().collect();
+    keep_inputs(&options.output, &inputs)?;
+    keep_other_pages(&options.output)?;
+    check_writable(&options.output)?;
+    let surrogate = &artifact.surrogate;
+    let name = &surrogate.provenance.study_name;
+    let start = Instant::now();
+    let model = match (&study, &options.study) {
+        (Some(study), Some(path)) => {
+            if surrogate.provenance.problem_hash != study.problem_hash() {
+                bail!(
+                    "{}: asks another question than {} was built for; give the study it was built from",
+                    path.display(),
+                    options.surrogate.display()
+                );
+            }
+            let what = path.display().to_string();
+            let found = ModelSample::new(study, options.runs, options.seed, &context.terminal)
+                .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
+                .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
+            Some(found)
+        }
+        _ => None,
+    };
+    let runs = surrogate.training.counts.direct_computations;
+    let compare = model
+        .as_ref()
+        .map(|(comparison, _)| CompareReport::new(name, runs, comparison, options.seed, start.elapsed().as_secs_f64()));
+    let count = model.as_ref().map_or(POINTS, |(_, max_re)| max_re.len());
+    let (points, block) = at_random_points(surrogate, count, options.seed);
+    let eval = sample(context, surrogate, options.samples, options.seed)?;
+    let bytes = std::fs::metadata(&options.surrogate).map_or(0, |metadata| metadata.len());
+    let html = SurrogatePage {
+        surrogate,
+        inspect: &InspectReport::new(&artifact, options.surrogate.display().to_string(), bytes),
+        eval: &eval,
+        points: &points,
+        block: &block,
+        validation: model.as_ref().zip(compare.as_ref()).map(|((_, max_re), compare)| Validation { max_re, compare }),
+    }
+    .to_html();
+    save(&options.output, html.as_bytes())?;
+    context.print(&Written {
+        file: options.output.display().to_string(),
+        bytes: html.len(),
+        stable_proportion: eval.stable_proportion,
+        compare,
+    })?;
+    Ok(Ending::Done)
+}
+
+/// The points that `eval` and `reference` take, and the surrogate there.
+fn at_random_points(surrogate: &Surrogate, count: usize, seed: u64) -> (Vec<Vec<f64>>, Block) {
+    let points: Vec<Vec<f64>> = (0..count as u64)
+        .map(|index| {
+            let mut point = vec![0.0; surrogate.inputs.dimension()];
+            random_point(&surrogate.inputs, seed, Purpose::Evaluation, index, &mut point);
+            point
+        })
+        .collect();
+    let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
+    let block = evaluate_points(surrogate, &Plan::new(surrogate), &references);
+    (points, block)
+}
+
+/// Where the page is.
+#[derive(Debug, Serialize)]
+struct Written {
+    file: String,
+    bytes: usize,
+    stable_proportion: f64,
+    compare: Option<CompareReport>,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "written to {} ({} bytes); open it in a browser",
+            self.file,
+            crate::report::count(self.bytes as u64)
+        )
+    }
+}

@@ -1,0 +1,118 @@
+//! The paper's figures 3 and 4, and the errors of all methods over what they cost.
+
+use super::charts::{color, points};
+use crate::plot::{Axis, Chart, Color, Guide, Marks, Series, Symbol};
+use crate::reproduce::{Cloud, PAIR, Row, TABLE_2};
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+
+type Pair = [Vec<Complex<f64>>; 2];
+
+/// Figure 3: growth rates and frequencies of the pair that coalesces, over friction.
+pub(super) fn figure_3(cloud: &Cloud) -> [Chart; 2] {
+    let uncertain = uncertain(cloud.inputs);
+    let chart = |title: &str, label: &str, part: fn(&Complex<f64>) -> f64, guides: Vec<Guide>| {
+        let mode = |(position, color): (usize, Color)| {
+            let marks = Marks::Points(points(&cloud.friction, cloud.model[position].iter().map(part)));
+            Series::new(format!("mode {}", PAIR[position]), color, marks)
+        };
+        Chart {
+            title: format!("{title}, {uncertain}"),
+            description: format!(
+                "{title} of modes {} and {} (the paper's 1 and 2) over the friction coefficient, {} model runs, {uncertain}.",
+                PAIR[0],
+                PAIR[1],
+                cloud.friction.len()
+            ),
+            x: Axis::linear("friction coefficient μ"),
+            y: Axis::linear(label),
+            series: [(0, Color::Blue), (1, Color::Red)].map(mode).into(),
+            guides,
+        }
+    };
+    let limit = vec![Guide::Horizontal(0.0, "stability limit".to_owned())];
+    [
+        chart("Growth rates", "Re λ in 1/s", |lambda| lambda.re, limit),
+        chart("Frequencies", "Im λ/2π in Hz", |lambda| lambda.im / TAU, Vec::new()),
+    ]
+}
+
+/// Figure 4: growth rates of the pair over friction, by the model and by a surrogate.
+pub(super) fn figure_4(cloud: &Cloud, method: &str, surrogate: &Pair) -> Chart {
+    let both = |pair: &Pair| {
+        let of_mode = |lambdas: &Vec<Complex<f64>>| points(&cloud.friction, lambdas.iter().map(|lambda| lambda.re));
+        Marks::Points(pair.iter().flat_map(of_mode).collect())
+    };
+    Chart {
+        title: format!("{}, {method}", uncertain(cloud.inputs)),
+        description: format!(
+            "Growth rates of modes {} and {} over the friction coefficient at {} points, {}: by the model, and over it by {method}.",
+            PAIR[0],
+            PAIR[1],
+            cloud.friction.len(),
+            uncertain(cloud.inputs)
+        ),
+        x: Axis::linear("friction coefficient μ"),
+        y: Axis::linear("Re λ in 1/s"),
+        series: vec![
+            Series::new("model", Color::Blue, both(&cloud.model)),
+            Series::new(method, Color::Red, both(surrogate)),
+        ],
+        guides: vec![Guide::Horizontal(0.0, "stability limit".to_owned())],
+    }
+}
+
+fn uncertain(inputs: usize) -> String {
+    format!("r = {inputs}")
+}
+
+/// A method of the table: its name in pictures, and which rows are its own.
+type Method = (&'static str, fn(&Row) -> bool, Symbol);
+
+/// The methods that are drawn, in the order of the table.
+const METHODS: [Method; 6] = [
+    ("gPC", |row| row.method == "gpc" && row.target == "eigenvalues", Symbol::Square),
+    ("multi-element gPC", |row| row.method == "me-gpc" && row.target == "eigenvalues", Symbol::Diamond),
+    ("sparse PC", |row| row.method == "sparse" && row.target == "eigenvalues", Symbol::Triangle),
+    ("gPC of invariants", |row| row.method != "sparse" && row.target == "invariants", Symbol::Square),
+    ("invariants", |row| row.method == "sparse" && row.target == "invariants" && !row.derivatives, Symbol::Circle),
+    ("invariants with derivatives", |row| row.method == "sparse" && row.derivatives, Symbol::Diamond),
+];
+
+/// Error of the proportion over model runs for all methods with so many inputs, compared on `runs` points; `None` without rows.
+pub(super) fn cost_chart(rows: &[Row], inputs: usize, runs: u64) -> Option<Chart> {
+    let own: Vec<&Row> = rows.iter().filter(|row| row.r == inputs).collect();
+    // About half a point in a fifth of all points: what is below is drawn there.
+    let smallest = 100.0 * 2.5 / runs as f64;
+    let at = |x: f64, y: f64| [x, y.max(smallest)];
+    let mut series: Vec<Series> = METHODS
+        .iter()
+        .enumerate()
+        .map(|(number, (name, holds, symbol))| {
+            let found = own.iter().filter(|row| holds(row));
+            let symbols = found
+                .filter_map(|row| Some(at(row.direct_computations as f64, row.stability_error_percent?)))
+                .collect();
+            Series::new(*name, color(number), Marks::Symbols(symbols, *symbol))
+        })
+        .collect();
+    let paper = TABLE_2.iter().filter(|row| row.inputs == inputs);
+    let printed = paper.flat_map(|row| {
+        let corners = row.direct_computations.into_iter().zip(row.stability_error);
+        corners.map(|(x, y)| at(x, y)).collect::<Vec<_>>()
+    });
+    series.push(Series::new("the paper's table", Color::Gray, Marks::Symbols(printed.collect(), Symbol::Circle)));
+    (!own.is_empty()).then(|| Chart {
+        title: uncertain(inputs),
+        description: format!(
+            "Error of the stability proportion over all model runs spent, {}. Errors below what {runs} points resolve are drawn at \
+             the lower edge; the paper counts the runs of the final mesh, and of its sparse rows the smallest and largest values are \
+             drawn.",
+            uncertain(inputs)
+        ),
+        x: Axis::logarithmic("model runs"),
+        y: Axis::logarithmic("error of the proportion in %"),
+        series,
+        guides: Vec::new(),
+    })
+}

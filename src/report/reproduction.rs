@@ -1,0 +1,284 @@
+//! The paper, reproduced, on one page: table 2 and figures 3 and 4 with the paper's figures beside ours, and what it lacks.
+
+use super::charts::{density_chart, sobol_charts};
+use super::page::Page;
+use super::paper_charts::{cost_chart, figure_3, figure_4};
+use super::sensitivity::SensitivityReport;
+use super::table::{Align, Table, count, significant};
+use crate::plot::{Chart, Color, sheet};
+use crate::reproduce::{Closer, Cloud, MOST_INPUTS, PAIR, PaperRow, Range, Reproduction, Row, TABLE_2};
+
+/// Errors below this are not worth digits, in percent.
+const SMALLEST_ERROR: f64 = 1e-4;
+
+/// Panels side by side in a file.
+const COLUMNS: usize = 2;
+
+/// Table 2: rows of one kind of build together, smallest and largest values over its designs. The first table has the paper's
+/// methods with the paper's figures beside ours, the second the same methods on invariants; empty ones are left out.
+pub fn table_2(rows: &[Row]) -> Vec<Table> {
+    let (papers, beyond): (Vec<_>, Vec<_>) = groups(rows).into_iter().partition(|group| is_papers(group[0]));
+    let tables = [papers_methods(&papers), invariants(&beyond)];
+    tables.into_iter().filter(|table| table.rows().len() > 1).collect()
+}
+
+/// Whether the paper has this kind of build.
+fn is_papers(row: &Row) -> bool {
+    row.target == "eigenvalues"
+}
+
+fn papers_methods(groups: &[Vec<&Row>]) -> Table {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("r", right),
+        ("method", Align::Left),
+        ("order", right),
+        ("paper", right),
+        ("model runs", right),
+        ("final mesh", right),
+        ("paper", right),
+        ("mean error %", right),
+        ("paper", right),
+        ("variance error %", right),
+        ("paper", right),
+        ("proportion error %", right),
+        ("paper", right),
+        ("misclassified %", right),
+    ]);
+    for group in groups {
+        let [r, method, order, runs, mesh, mean, variance, proportion, misclassified] = cells(group);
+        let paper = papers_row(group[0]);
+        let printed = |value: fn(&PaperRow) -> Range| paper.map(value);
+        let error = |value: fn(&PaperRow) -> Range| printed(value).map_or(String::new(), range);
+        let number = |value: fn(&PaperRow) -> Range| printed(value).map_or(String::new(), whole);
+        table.row([
+            r,
+            method,
+            order,
+            number(|paper| paper.order),
+            runs,
+            mesh,
+            number(|paper| paper.direct_computations),
+            mean,
+            error(|paper| paper.mean_error),
+            variance,
+            error(|paper| paper.variance_error),
+            proportion,
+            error(|paper| paper.stability_error),
+            misclassified,
+        ]);
+    }
+    table
+}
+
+fn invariants(groups: &[Vec<&Row>]) -> Table {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("r", right),
+        ("method", Align::Left),
+        ("order", right),
+        ("model runs", right),
+        ("final mesh", right),
+        ("mean error %", right),
+        ("variance error %", right),
+        ("proportion error %", right),
+        ("misclassified %", right),
+    ]);
+    groups.iter().for_each(|group| table.row(cells(group)));
+    table
+}
+
+/// What was found with one kind of build: r, method, order, runs, runs of the final mesh, errors of mean, variance and
+/// proportion, misclassified points.
+fn cells(group: &[&Row]) -> [String; 9] {
+    let first = group[0];
+    let spread = |value: fn(&Row) -> Option<f64>| {
+        let values: Option<Vec<f64>> = group.iter().map(|row| value(row)).collect();
+        values.map_or("–".to_owned(), |values| range(extremes(values)))
+    };
+    let counted = |value: fn(&Row) -> u64| whole(extremes(group.iter().map(|row| value(row) as f64).collect()));
+    [
+        first.r.to_string(),
+        name(first),
+        counted(|row| row.order.into()),
+        counted(|row| row.direct_computations),
+        counted(|row| row.final_mesh_computations),
+        spread(|row| row.mean_error_percent),
+        spread(|row| row.variance_error_percent),
+        spread(|row| row.stability_error_percent),
+        spread(|row| Some(row.misclassified_percent)),
+    ]
+}
+
+/// Rows of the same build with other designs.
+fn groups(rows: &[Row]) -> Vec<Vec<&Row>> {
+    let is_same = |a: &Row, b: &Row| {
+        let build = |row: &Row| (row.r, row.method, row.target, row.derivatives);
+        build(a) == build(b) && a.method == "sparse"
+    };
+    let mut groups: Vec<Vec<&Row>> = Vec::new();
+    for row in rows {
+        match groups.iter_mut().find(|group| is_same(group[0], row)) {
+            Some(group) => group.push(row),
+            None => groups.push(vec![row]),
+        }
+    }
+    // As in the paper: by method for each number of parameters.
+    let place = |row: &Row| {
+        let method = ["gpc", "me-gpc", "sparse"].iter().position(|method| *method == row.method);
+        (row.r, method, row.derivatives)
+    };
+    groups.sort_by_key(|group| place(group[0]));
+    groups
+}
+
+fn name(row: &Row) -> String {
+    let method = match row.method {
+        "gpc" => "gPC",
+        "me-gpc" => "ME-gPC",
+        _ => "sparse PC",
+    };
+    match (row.target, row.derivatives) {
+        (_, true) => format!("{method} with derivatives"),
+        _ => method.to_owned(),
+    }
+}
+
+/// The paper's row for this build, if it has one: quadratures by their number of runs, sparse rows by their method.
+fn papers_row(row: &Row) -> Option<&'static PaperRow> {
+    let is_same = |paper: &&PaperRow| {
+        let same_runs = paper.direct_computations[0] == row.final_mesh_computations as f64;
+        (paper.inputs, paper.method) == (row.r, row.method) && (row.method == "sparse" || same_runs)
+    };
+    TABLE_2.iter().find(is_same)
+}
+
+fn extremes(values: Vec<f64>) -> Range {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
+}
+
+fn whole([low, high]: Range) -> String {
+    let [low, high] = [low, high].map(|value| count(value as u64));
+    if low == high { low } else { format!("{low}–{high}") }
+}
+
+fn range(values: Range) -> String {
+    let [low, high] = values.map(|error| match error {
+        error if error > 0.0 && error < SMALLEST_ERROR => format!("< {SMALLEST_ERROR}"),
+        error if error < 1.0 => significant(error, 2),
+        error => significant(error, 3),
+    });
+    if low == high { low } else { format!("{low}–{high}") }
+}
+
+fn clouds(work: &Reproduction, wanted: impl Fn(usize) -> bool) -> impl Iterator<Item = &Cloud> {
+    work.clouds.iter().filter(move |cloud| wanted(cloud.inputs))
+}
+
+fn figure_3_charts(work: &Reproduction) -> Vec<Chart> {
+    clouds(work, |inputs| inputs == 1 || inputs == MOST_INPUTS).flat_map(figure_3).collect()
+}
+
+fn figure_4_charts(work: &Reproduction) -> Vec<Chart> {
+    clouds(work, |inputs| inputs >= 3).map(|cloud| figure_4(cloud, "sparse PC", &cloud.sparse)).collect()
+}
+
+fn invariants_charts(work: &Reproduction) -> Vec<Chart> {
+    clouds(work, |inputs| inputs >= 3).map(|cloud| figure_4(cloud, "invariants", &cloud.invariants)).collect()
+}
+
+fn cost_charts(work: &Reproduction) -> Vec<Chart> {
+    (3..=MOST_INPUTS).filter_map(|inputs| cost_chart(&work.rows, inputs, work.options().runs)).collect()
+}
+
+/// The figures that are there as files, each with its name: `figure3.svg`, `figure4.svg` and, with the table, `errors.svg`.
+pub fn figure_sheets(work: &Reproduction) -> Vec<(&'static str, String)> {
+    let mut sheets = Vec::new();
+    if work.options().figure_3 {
+        let description =
+            "Growth rates and frequencies of the two modes that coalesce, over the friction coefficient, by the model.";
+        sheets.push(("figure3.svg", sheet("Coalescence of two modes", description, &figure_3_charts(work), COLUMNS)));
+    }
+    if work.options().figure_4 {
+        let description = "Growth rates of the two modes over the friction coefficient for 3 to 8 uncertain parameters: model and sparse PC.";
+        sheets.push(("figure4.svg", sheet("Model and sparse PC", description, &figure_4_charts(work), COLUMNS)));
+    }
+    if work.options().table_2 {
+        let description =
+            "Error of the stability proportion over model runs for all methods and 3 to 8 uncertain parameters.";
+        sheets.push(("errors.svg", sheet("Error over cost", description, &cost_charts(work), COLUMNS)));
+    }
+    sheets
+}
+
+impl Reproduction {
+    /// What was found as an HTML file.
+    pub fn to_html(&self) -> String {
+        let mut page = Page::new("Sparse polynomial chaos for the stability of a clutch, reproduced");
+        page.paragraph(
+            "Kieu, Bergeot and Berger (23ème Congrès Français de Mécanique, Lille 2017) compare full, multi-element and sparse \
+             polynomial chaos expansions of the eigenvalues of a clutch with friction. Here are their table 2 and figures 3 and 4, \
+             computed anew, and beside them expansions of invariants, which stay smooth where eigenvalues coalesce.",
+        );
+        if self.options().table_2 {
+            self.table_section(&mut page);
+        }
+        if self.options().figure_3 {
+            page.section("Figure 3: coalescence");
+            page.paragraph(
+                "Growing friction brings two modes to one frequency; from there on one of them is excited. Above is the nominal \
+                 clutch, where friction alone is uncertain; below, all eight parameters are.",
+            );
+            page.charts(&figure_3_charts(self));
+        }
+        if self.options().figure_4 {
+            page.section("Figure 4: growth rates by the model and by sparse PC");
+            page.charts(&figure_4_charts(self));
+            page.section("The same by invariants");
+            page.charts(&invariants_charts(self));
+        }
+        if let Some(closer) = &self.closer {
+            closer_section(&mut page, closer);
+        }
+        page.into_html()
+    }
+
+    fn table_section(&self, page: &mut Page) {
+        page.section("Table 2");
+        page.paragraph(&format!(
+            "Every build is compared with the model on the same {} points (seed {}) for each number r of uncertain parameters. Sparse \
+             builds are made from five designs; smallest and largest values are given. Model runs count everything spent; the paper \
+             counts the final mesh. Mean and variance errors are the larger of Re λ of both modes; the paper does not say which it \
+             means. Its error of 0.18 % for gPC with r = 2 is probably a misprint: 6.45 % on either side of it.",
+            count(self.options().runs),
+            self.options().seed
+        ));
+        for (number, table) in table_2(&self.rows).iter().enumerate() {
+            if number == 1 {
+                page.section("The same methods on invariants");
+                page.paragraph(
+                    "Expanded are the mean and the product of the two eigenvalues that coalesce instead of the eigenvalues. gPC of \
+                     order 3 is by least squares, from twice as many equations as terms.",
+                );
+            }
+            page.table(table);
+        }
+        page.section("Errors over cost");
+        page.charts(&cost_charts(self));
+    }
+}
+
+fn closer_section(page: &mut Page, closer: &Closer) {
+    page.section("All eight parameters uncertain");
+    let mut charts = vec![density_chart(
+        &format!("Density of max Re λ over modes {} and {}", PAIR[0], PAIR[1]),
+        &[
+            ("model", Color::Blue, &closer.model),
+            ("sparse PC", Color::Orange, &closer.sparse),
+            ("invariants", Color::Red, &closer.invariants),
+        ],
+    )];
+    let names = closer.names.iter().map(String::as_str);
+    charts.extend(sobol_charts(&SensitivityReport::new(names, &closer.sensitivities)));
+    page.charts(&charts);
+}

@@ -1,0 +1,128 @@
+//! A surrogate on one page: the answer and how sure it is, what the surrogate is made of, and pictures.
+
+use super::charts::{density_chart, mode_charts, most_influential, sobol_charts, spectrum_chart, validation_chart};
+use super::compare::CompareReport;
+use super::eval::EvalReport;
+use super::inspect::InspectReport;
+use super::page::Page;
+use super::table::count;
+use crate::plot::Color;
+use crate::spectrum::Block;
+use crate::surrogate::Surrogate;
+
+/// Inputs over which modes are drawn.
+const DRAWN_INPUTS: usize = 3;
+
+/// Points of a scatter: more would only hide each other.
+const SCATTER: usize = 1500;
+
+/// A surrogate and what was found with it.
+#[derive(Debug)]
+pub struct SurrogatePage<'a> {
+    /// The surrogate.
+    pub surrogate: &'a Surrogate,
+    /// What is inside its file.
+    pub inspect: &'a InspectReport,
+    /// What samples of it say.
+    pub eval: &'a EvalReport,
+    /// Standardized points.
+    pub points: &'a [Vec<f64>],
+    /// The surrogate there.
+    pub block: &'a Block,
+    /// The model at the same points, if a study was given.
+    pub validation: Option<Validation<'a>>,
+}
+
+/// The model at the points of a page.
+#[derive(Debug)]
+pub struct Validation<'a> {
+    /// max Re λ of the model at the first points over the modes that the surrogate carries, in 1/s.
+    pub max_re: &'a [f64],
+    /// Surrogate and model on all of these.
+    pub compare: &'a CompareReport,
+}
+
+impl SurrogatePage<'_> {
+    /// The page as an HTML file.
+    pub fn to_html(&self) -> String {
+        let mut page = Page::new(&format!("Stability of {}", self.eval.study));
+        self.answer(&mut page);
+        self.pictures(&mut page);
+        self.modes(&mut page);
+        self.content(&mut page);
+        page.into_html()
+    }
+
+    fn answer(&self, page: &mut Page) {
+        let eval = self.eval;
+        page.lead(&format!("Stable in {:.3} % of cases.", 100.0 * eval.stable_proportion));
+        page.facts(&eval.sureness.facts());
+        eval.warnings.iter().for_each(|warning| page.warning(warning));
+        if let Some(Validation { compare, .. }) = &self.validation {
+            page.paragraph(&format!(
+                "Checked at {} points where the model was run as well: the proportion there is {:.3} % by the model and {:.3} % by \
+                 the surrogate, {} off, and {:.3} % of the points are misclassified.",
+                count(compare.samples),
+                100.0 * compare.proportion_model,
+                100.0 * compare.proportion_surrogate,
+                compare.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("{error:.3} %")),
+                compare.misclassified_percent
+            ));
+        }
+    }
+
+    fn pictures(&self, page: &mut Page) {
+        page.section("Where it loses stability, and why");
+        let mut charts = Vec::new();
+        let modes: Vec<String> = self.surrogate.modes().iter().map(usize::to_string).collect();
+        let title = format!("Density of max Re λ over modes {}", modes.join(", "));
+        let surrogate = ("surrogate", Color::Red, self.block.max_re.as_slice());
+        match &self.validation {
+            Some(Validation { max_re, .. }) => {
+                let compared = &self.block.max_re[..max_re.len()];
+                charts.push(density_chart(&title, &[("model", Color::Blue, max_re), surrogate]));
+                let shown = max_re.len().min(SCATTER);
+                charts.push(validation_chart(&max_re[..shown], &compared[..shown]));
+            }
+            None => charts.push(density_chart(&title, &[surrogate])),
+        }
+        if let Some(sensitivity) = &self.eval.sensitivity {
+            charts.extend(sobol_charts(sensitivity));
+        }
+        page.charts(&charts);
+    }
+
+    fn modes(&self, page: &mut Page) {
+        page.section("Modes over the most influential inputs");
+        let inputs = match &self.eval.sensitivity {
+            Some(sensitivity) => most_influential(sensitivity, DRAWN_INPUTS),
+            None => (0..self.surrogate.inputs.dimension().min(DRAWN_INPUTS)).collect(),
+        };
+        let shown = self.points.len().min(SCATTER);
+        let mut charts = Vec::new();
+        let few = self.block.first(shown);
+        for j in inputs {
+            let input = &self.surrogate.inputs.inputs()[j];
+            let x: Vec<f64> = self.points[..shown].iter().map(|point| input.marginal.physical(point[j])).collect();
+            charts.extend(mode_charts(&input.name, &x, &self.surrogate.modes(), &few));
+        }
+        page.charts(&charts);
+        page.table(&self.eval.mode_table());
+    }
+
+    fn content(&self, page: &mut Page) {
+        page.section("Inputs");
+        page.table(&self.inspect.input_table());
+        page.section("How the surrogate was made");
+        page.facts(&self.inspect.facts());
+        page.table(&super::build::FitReport::table(&self.inspect.components));
+        page.paragraph(
+            "R² is the share of the variance explained at the points of the design, S² that at points left out of the fit.",
+        );
+        page.charts(&[spectrum_chart(self.surrogate)]);
+        if let Some(Validation { compare, .. }) = &self.validation {
+            page.section("Errors against the model");
+            page.table(&compare.component_table());
+        }
+    }
+}
