@@ -14,6 +14,7 @@ use pcc::study::Study;
 use std::hint::black_box;
 
 const STUDY: &str = include_str!("../surrogates/clutch-r8-eigenvalues.toml");
+const R5_STUDY: &str = include_str!("../surrogates/clutch-r5-eigenvalues.toml");
 const INVARIANTS: &str = include_str!("../surrogates/clutch-r8.toml");
 const SURROGATES: [(&str, &[u8]); 2] = [
     ("clutch-r8-eigenvalues", include_bytes!("../surrogates/clutch-r8-eigenvalues.pcc")),
@@ -67,8 +68,17 @@ fn evaluation(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("eval");
     group.sample_size(10);
     group.throughput(Throughput::Elements(SAMPLES));
-    for (name, bytes) in SURROGATES {
-        let surrogate = decode(bytes).expect("the shipped surrogate is valid").surrogate;
+    let shipped = SURROGATES
+        .map(|(name, bytes)| (name.to_owned(), decode(bytes).expect("the shipped surrogate is valid").surrogate));
+    // The same studies by full expansions of degree 2, on one element and on many.
+    let full = [1, 24, 200].map(|elements| {
+        let lines =
+            format!("[fit]\nmethod = \"me-gpc\"\ntheta_1 = 0.0\nelements = {elements}\n[design]\nmaximum = 1000000");
+        let study = Study::from_toml(&format!("{R5_STUDY}\n{lines}\n")).expect("the study is valid");
+        let surrogate = pcc::build::build(&study, &Silent).expect("the clutch converges");
+        (format!("clutch-r5-eigenvalues on {elements} elements"), surrogate)
+    });
+    for (name, surrogate) in shipped.into_iter().chain(full) {
         group.bench_function(format!("a million samples of {name}, all cores"), |bencher| {
             bencher.iter(|| monte_carlo(black_box(&surrogate), SAMPLES, 1, &Silent).expect("samples are asked for"));
         });

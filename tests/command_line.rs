@@ -58,7 +58,19 @@ macro_rules! assert_output {
 #[test]
 fn help_of_every_command() {
     let folder = workplace();
-    let commands = ["run", "build", "eval", "reference", "compare", "certify", "inspect", "convert", "completions"];
+    let commands = [
+        "run",
+        "build",
+        "eval",
+        "reference",
+        "compare",
+        "certify",
+        "inspect",
+        "report",
+        "reproduce",
+        "convert",
+        "completions",
+    ];
     let mut text = output(folder.path(), &["--help"]);
     for command in commands {
         text.push_str(&format!("\n=== {command} ===\n{}", output(folder.path(), &["help", command])));
@@ -80,6 +92,121 @@ fn reports_for_people() {
     let points = ["eval", "surrogate.pcc", "--points", "points.csv", "--out", "out.csv"];
     assert_output!("points", output(folder.path(), &points));
     assert_output!("show_study", output(folder.path(), &["build", "study.toml", "--show-study"]));
+}
+
+#[test]
+fn full_expansions_and_elements_are_built_shown_and_inspected() {
+    let folder = workplace();
+    let good = text("surrogates/clutch-r2-eigenvalues.toml");
+    let mut text = String::new();
+    for (name, fit) in [
+        ("quadrature", "method = \"gpc\""),
+        ("least-squares", "method = \"gpc\"\nsolver = \"least-squares\""),
+        ("elements", "method = \"me-gpc\"\nelements = 5"),
+    ] {
+        fs::write(folder.path().join("full.toml"), format!("{good}\n[fit]\n{fit}\n")).unwrap();
+        let shown = output(folder.path(), &["build", "full.toml", "--show-study"]);
+        let tables = shown.split("\n[design]").nth(1).unwrap();
+        let built = output(folder.path(), &["build", "full.toml", "-o", "full.pcc"]);
+        let evaluated = output(folder.path(), &["eval", "full.pcc", "-n", "1e4"]);
+        let answer = evaluated.split("\nmode ").next().unwrap();
+        text.push_str(&format!("=== {name}\n[design]{tables}\n{built}\n{answer}"));
+    }
+    text.push_str(&format!("=== inspect\n{}", output(folder.path(), &["inspect", "full.pcc", "--check"])));
+    assert_output!("full_expansions", text);
+}
+
+#[test]
+fn a_report_is_a_page_that_replaces_pages_only() {
+    let folder = workplace();
+    fs::copy(repository("surrogates/clutch-r2-eigenvalues.pcc"), folder.path().join("surrogate.pcc")).unwrap();
+    let arguments = ["report", "surrogate.pcc", "--study", "study.toml", "-n", "1e4", "--runs", "500"];
+    output(folder.path(), &arguments);
+    let html = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>\n"));
+    for part in ["Stable in", "Surrogate against model", "Density of max Re", "Coefficients by degree", "Data as CSV"] {
+        assert!(html.contains(part), "{part} is missing");
+    }
+    assert_eq!(html.matches("<svg").count(), html.matches("<figcaption>").count());
+    for loaded in ["<script", "<img", "<link", "<iframe", " src=", "@import", "url(h"] {
+        assert!(!html.contains(loaded), "{loaded}");
+    }
+    output(folder.path(), &arguments);
+    assert_eq!(fs::read_to_string(folder.path().join("report.html")).unwrap(), html, "the same page again");
+    let json: serde_json::Value =
+        serde_json::from_str(&output(folder.path(), &["report", "surrogate.pcc", "-n", "100", "--json"])).unwrap();
+    assert!(json["file"] == "report.html" && json["stable_proportion"].as_f64().unwrap() > 0.1);
+
+    fs::write(folder.path().join("mine.html"), "<p>not by pcc</p>").unwrap();
+    let mut messages = refusal(folder.path(), &["report", "surrogate.pcc", "-o", "mine.html"]);
+    messages.push_str(&refusal(folder.path(), &["report", "surrogate.pcc", "-o", "surrogate.pcc"]));
+    messages.push_str(&refusal(folder.path(), &["report", "surrogate.pcc", "-o", "no/such/folder.html"]));
+    messages.push_str(&refusal(folder.path(), &["report", "study.toml"]));
+    messages.push_str(&refusal(folder.path(), &["report", "surrogate.pcc", "--study", "study.toml", "--runs", "1e9"]));
+    fs::write(folder.path().join("other.toml"), text("surrogates/clutch-r3-eigenvalues.toml")).unwrap();
+    messages.push_str(&refusal(folder.path(), &["report", "surrogate.pcc", "--study", "other.toml"]));
+    assert_eq!(fs::read_to_string(folder.path().join("mine.html")).unwrap(), "<p>not by pcc</p>");
+    assert_output!("bad_reports", messages);
+}
+
+#[test]
+fn names_that_try_to_be_markup_are_text_on_the_page() {
+    let folder = workplace();
+    let mut surrogate = pcc::artifact::read(&repository("surrogates/clutch-r2.pcc")).unwrap().surrogate;
+    let hostile = "</script><img src=x onerror=alert(1)>";
+    surrogate.provenance.study_name = hostile.to_owned();
+    let mut inputs = surrogate.inputs.inputs().to_vec();
+    inputs.iter_mut().for_each(|input| input.name = format!("{hostile}{}", input.name));
+    surrogate.inputs = pcc::input::InputSpace::new(inputs).unwrap();
+    for output in &mut surrogate.outputs {
+        output.components.iter_mut().for_each(|component| component.name.push_str(hostile));
+    }
+    let bytes = pcc::artifact::encode(&surrogate, pcc::artifact::Format::Json).unwrap();
+    fs::write(folder.path().join("hostile.json"), bytes).unwrap();
+    output(folder.path(), &["report", "hostile.json", "-n", "1000"]);
+    let html = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(!html.contains("<img") && !html.contains("</script"));
+    assert!(html.matches("&lt;img src=x onerror=alert(1)&gt;").count() > 20);
+}
+
+#[test]
+fn the_paper_is_reproduced_into_a_folder() {
+    let folder = workplace();
+    let only = |part: &str| output(folder.path(), &["reproduce", "--only", part, "-o", part, "--runs", "300"]);
+    only("figure3");
+    only("figure4");
+    let files = |part: &str| {
+        let entries = fs::read_dir(folder.path().join(part)).unwrap();
+        let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(files("figure3"), ["figure3.svg", "report.html"]);
+    assert_eq!(files("figure4"), ["figure4.svg", "report.html"]);
+    let page = fs::read_to_string(folder.path().join("figure4/report.html")).unwrap();
+    assert_eq!(page.matches("<figure ").count(), 12, "six by the paper's method, six by invariants");
+
+    let text = only("table2");
+    assert_eq!(files("table2"), ["errors.svg", "report.html", "table2.csv", "table2.md"]);
+    let mut rows = csv::Reader::from_path(folder.path().join("table2/table2.csv")).unwrap();
+    let reference = fs::read_to_string(repository("tests/data/table2.csv")).unwrap();
+    let added = "target,derivatives,seed,final_mesh_computations,misclassified_percent,seconds";
+    let expected = format!("{},{added}", reference.lines().next().unwrap());
+    assert_eq!(rows.headers().unwrap().iter().collect::<Vec<_>>().join(","), expected);
+    let rows: Vec<csv::StringRecord> = rows.records().map(Result::unwrap).collect();
+    for line in reference.lines().skip(1) {
+        let of_paper: Vec<&str> = line.split(',').collect();
+        let same = |row: &&csv::StringRecord| {
+            let is_method = row[0] == *of_paper[0] && row[1] == *of_paper[1] && row[7] == *"eigenvalues";
+            is_method && (of_paper[1] == "sparse" || row[10] == *of_paper[3])
+        };
+        let found = rows.iter().filter(same).count();
+        assert_eq!(found, if of_paper[1] == "sparse" { 5 } else { 1 }, "{line}");
+    }
+    assert!(rows.iter().any(|row| row[7] == *"invariants" && row[8] == *"true"));
+    for line in ["table 2: the paper's methods", "the same methods on invariants", "table2/report.html"] {
+        assert!(text.contains(line), "{line} is missing");
+    }
 }
 
 #[test]
@@ -228,6 +355,32 @@ fn bad_studies_are_refused_with_place_and_remedy() {
             "too much memory",
             format!("{good}\n[fit]\nmax_degree = 100\n[design]\nmaximum = 1000000\nstep = 1000000\n")
                 .replace("[inputs]", "[inputs]\nl = { distribution = \"uniform\", nominal = 0.0125, spread = 0.05 }"),
+        ),
+        ("too many quadrature nodes", format!("{good}\n[fit]\nmethod = \"gpc\"\nmax_degree = 100\n")),
+        (
+            "more quadrature nodes than can be counted",
+            text("surrogates/clutch-r8-eigenvalues.toml") + "\n[fit]\nmethod = \"me-gpc\"\nmax_degree = 100\n",
+        ),
+        (
+            "too many points for least squares",
+            format!(
+                "{good}\n[fit]\nmethod = \"gpc\"\nsolver = \"least-squares\"\nmax_degree = 99\noversampling = 9.0\n"
+            ),
+        ),
+        ("oversampled quadrature", format!("{good}\n[fit]\nmethod = \"gpc\"\noversampling = 2.0\n")),
+        ("unknown solver", format!("{good}\n[fit]\nmethod = \"gpc\"\nsolver = \"guess\"\n")),
+        ("size of a quadrature", format!("{good}\n[fit]\nmethod = \"gpc\"\n[design]\ninitial = 10\n")),
+        ("design of a quadrature", format!("{good}\n[fit]\nmethod = \"gpc\"\n[design]\nkind = \"nested-lhs\"\n")),
+        ("a grid for the stepwise method", format!("{good}\n[design]\nkind = \"tensor-gauss\"\n")),
+        ("elements of another method", format!("{good}\n[fit]\nelements = 5\n")),
+        ("no elements", format!("{good}\n[fit]\nmethod = \"me-gpc\"\nelements = 0\n")),
+        ("negative theta", format!("{good}\n[fit]\nmethod = \"me-gpc\"\ntheta_1 = -1.0\n")),
+        ("theta above one", format!("{good}\n[fit]\nmethod = \"me-gpc\"\ntheta_2 = 1.5\n")),
+        ("target of a full expansion", format!("{good}\n[fit]\nmethod = \"gpc\"\ns2_target = 0.9\n")),
+        (
+            "derivatives at quadrature nodes",
+            format!("{good}\n[fit]\nmethod = \"gpc\"\nderivatives = true\n")
+                .replace("\"eigenvalues\"", "\"invariants\""),
         ),
         ("one point", format!("{good}\n[design]\ninitial = 1\n")),
         ("name with a path", good.replace("name = \"clutch-r2-eigenvalues\"", "name = \"../../etc/passwd\"")),
@@ -495,8 +648,9 @@ fn interruption_ends_with_130_and_no_file() {
     let rows: String = (0..2_000_000).map(|_| "0.25,16e6\n").collect();
     fs::write(folder.path().join("many.csv"), format!("mu,k_p\n{rows}")).unwrap();
     let before = fs::read_dir(folder.path()).unwrap().count();
-    let cases: [&[&str]; 4] = [
+    let cases: [&[&str]; 5] = [
         &["eval", "surrogate.pcc", "-n", "1e13"],
+        &["report", "surrogate.pcc", "-n", "1e13"],
         &["reference", "study.toml", "-n", "1e13"],
         &["reference", "study.toml", "--points", "many.csv", "--out", "out.csv"],
         &["build", "slow.toml"],

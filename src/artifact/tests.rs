@@ -235,8 +235,22 @@ fn outputs_that_make_no_sense() {
 fn kinds_of_later_versions_are_named() {
     let scalar = meaning(|d| d.outputs.outputs[0].kind = v1::OutputKind::Scalar);
     assert!(matches!(scalar, ReadError::Unsupported { .. }), "{scalar}");
-    let elements = meaning(|d| d.elements.elements.push(d.elements.elements[0].clone()));
-    assert_eq!(section_of(elements), "elements");
+}
+
+#[test]
+fn elements_that_make_no_sense() {
+    let side = |change: fn(&mut v1::Side)| section_of(meaning(|d| change(&mut d.elements.elements[0].sides[1])));
+    assert_eq!(side(|side| side.bounds = None), "elements");
+    assert_eq!(side(|side| side.center = 0.5), "elements");
+    assert_eq!(side(|side| side.half_width = 2.0), "elements");
+    assert_eq!(side(|side| side.bounds = Some(v1::Bounds { lower: 1.0, upper: -1.0 })), "elements");
+    assert_eq!(section_of(meaning(|d| d.elements.elements[0].weight = 0.5)), "elements");
+    assert_eq!(section_of(meaning(|d| d.elements.elements[0].sides.truncate(1))), "elements");
+    assert_eq!(section_of(meaning(|d| d.elements.elements.clear())), "elements");
+    assert_eq!(section_of(meaning(|d| d.elements.elements.push(d.elements.elements[0].clone()))), "elements");
+    let (below, above) = (v1::Branch::Element(0), v1::Branch::Split(0));
+    let split = v1::Split { input: 0, at: 0.0, below, above };
+    assert_eq!(section_of(meaning(|d| d.elements.splits.push(split))), "elements");
 }
 
 #[test]

@@ -267,7 +267,7 @@ pub struct Expansions {
     pub expansions: Vec<Expansion>,
 }
 
-/// Σ c_α ψ_α(ξ) with ψ_α = Π φ_{α_j}(ξ_j).
+/// Σ c_α ψ_α with ψ_α = Π φ_{α_j}(ζ_j) in the local variables ζ of the element.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Expansion {
@@ -279,7 +279,7 @@ pub struct Expansion {
     pub index_set: u32,
     /// c_α, one per multi-index.
     pub coefficients: Vec<f64>,
-    /// R² on the design.
+    /// R² on the design; with several elements errors are relative to the variance over all of them.
     pub r2: Option<f64>,
     /// Leave-one-out S².
     pub s2: Option<f64>,

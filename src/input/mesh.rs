@@ -293,7 +293,7 @@ mod tests {
         assert_eq!(forge(&|_, splits| splits[1].at = 1.0), MeshError::Outside { split: 1 });
         assert_eq!(forge(&|_, splits| splits[2].at = 0.25), MeshError::OtherBox { element: 3 });
         assert_eq!(forge(&|elements, _| elements[1].weight = 0.3), MeshError::OtherBox { element: 1 });
-        assert_eq!(forge(&|elements, _| drop(elements.pop())), MeshError::NoTree);
+        assert_eq!(forge(&|elements, _| elements.truncate(3)), MeshError::NoTree);
         let twice = forge(&|_, splits| splits[2].above = Branch::Element(1));
         assert!(matches!(twice, MeshError::NoTree | MeshError::OtherBox { .. }));
     }

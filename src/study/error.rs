@@ -99,7 +99,7 @@ pub enum StudyError {
         /// Number of inputs.
         inputs: usize,
         /// Number of model runs, of one element if there are several.
-        runs: f64,
+        runs: String,
         /// What is allowed.
         maximum: usize,
     },
@@ -114,7 +114,7 @@ pub enum StudyError {
         /// Number of inputs.
         inputs: usize,
         /// Number of model runs.
-        runs: f64,
+        runs: String,
     },
     /// The number of quadrature nodes has no factor.
     #[error("{place}: belongs to solver = \"least-squares\"; choose that solver or remove the key")]

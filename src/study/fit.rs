@@ -229,15 +229,20 @@ impl Lines<'_> {
             _ => return Ok(None),
         };
         if runs > maximum as f64 {
-            return Err(StudyError::TooManyRuns { degree, inputs, runs, maximum });
+            return Err(StudyError::TooManyRuns { degree, inputs, runs: whole(runs), maximum });
         }
         let numbers = runs * equations_per_run as f64 * terms(inputs, degree);
         let is_stored = matches!(fit.method, FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { .. }, .. }));
         if is_stored && numbers > LARGEST_MATRIX {
-            return Err(StudyError::TooLargeMatrix { degree, inputs, runs });
+            return Err(StudyError::TooLargeMatrix { degree, inputs, runs: whole(runs) });
         }
         Ok(Some(runs as usize))
     }
+}
+
+/// A number of runs: exact as far as it can be counted, else its magnitude.
+fn whole(runs: f64) -> String {
+    if runs < 1e15 { format!("{runs}") } else { format!("{runs:.1e}") }
 }
 
 /// Entries of the matrix of a least-squares fit: two gigabytes.
