@@ -109,6 +109,9 @@ pub struct Row {
     pub misclassified_percent: f64,
     /// Time of the build.
     pub seconds: f64,
+    /// Whether a full expansion is by least squares; its order alone does not say so. Not a column.
+    #[serde(skip)]
+    pub is_least_squares: bool,
 }
 
 /// Eigenvalues of the pair at some points, by the model and by two surrogates.
@@ -267,6 +270,7 @@ fn row(
         final_mesh_computations: counts.final_mesh,
         misclassified_percent: comparison.misclassified_percent(),
         seconds,
+        is_least_squares: study.fit.method.has_fixed_design() && !study.fit.method.is_quadrature(),
     }
 }
 
