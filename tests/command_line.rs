@@ -670,6 +670,32 @@ fn interruption_ends_with_130_and_no_file() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupted_reproduction_keeps_the_rows_that_are_done() {
+    let folder = workplace();
+    let table = folder.path().join("reproduction/table2.csv");
+    let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin("pcc"))
+        .current_dir(folder.path())
+        .args(["reproduce", "--only", "table2", "--runs", "2000"])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The rows with one input are there within seconds, those with eight are not.
+    while !table.exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it ended without a table");
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(interrupted.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let rows = csv::Reader::from_path(&table).unwrap().records().map(Result::unwrap).count();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains(&format!("{rows} rows that were done are in ")), "{message}");
+    assert!(!folder.path().join("reproduction/report.html").exists());
+}
+
 /// A folder with the r = 2 study by invariants and its surrogate.
 fn invariants_workplace() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();

@@ -77,6 +77,19 @@ fn the_explained_study_is_valid_and_shows_the_defaults() {
     }
 }
 
+/// The fits of full expansions, each beside the same study without them.
+#[test]
+fn the_explained_full_expansions_show_the_defaults() {
+    let toml = blocks("toml");
+    assert_eq!(toml.len(), 5, "two studies, three fits");
+    let study = toml[1].split("[design]").next().unwrap();
+    let bare = ["method = \"gpc\"", "method = \"gpc\"\nsolver = \"least-squares\"", "method = \"me-gpc\""];
+    for (explained, bare) in toml[2..].iter().zip(bare) {
+        let explained = Study::from_toml(&format!("{study}{explained}")).unwrap();
+        assert_eq!(Study::from_toml(&format!("{study}[fit]\n{bare}\n")).unwrap(), explained);
+    }
+}
+
 fn shows_the_defaults(explained: &str, target: &str) {
     let study = Study::from_toml(explained).unwrap();
     let bare = Study::from_toml(&format!(
