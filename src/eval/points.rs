@@ -164,6 +164,31 @@ mod tests {
         }
     }
 
+    /// E\[f | ξ_u\] by composite Gauss rules on cells that no element divides.
+    #[test]
+    fn sobol_indices_over_elements_equal_brute_force() {
+        const CELLS: usize = 4;
+        let surrogate = in_elements();
+        let (nodes, weights) = crate::numerics::quadrature::gauss(&[0.0; 3], &[1.0 / 3f64.sqrt(), 2.0 / 15f64.sqrt()]);
+        let node = |i: usize| -1.0 + (2.0 * (i / 3) as f64 + 1.0 + nodes[i % 3]) / CELLS as f64;
+        let weight = |i: usize| weights[i % 3] / CELLS as f64;
+        let count = 3 * CELLS;
+        let value = |i: usize, k: usize| surrogate.evaluate(&[node(i), node(k)])[0];
+        let sum = |f: &dyn Fn(usize) -> f64| (0..count).map(|i| weight(i) * f(i)).sum::<f64>();
+        let mean = sum(&|i| sum(&|k| value(i, k)));
+        let variance = sum(&|i| sum(&|k| (value(i, k) - mean).powi(2)));
+        let alone = [
+            sum(&|i| (sum(&|k| value(i, k)) - mean).powi(2)) / variance,
+            sum(&|k| (sum(&|i| value(i, k)) - mean).powi(2)) / variance,
+        ];
+        let found = surrogate.sobol_indices(0).unwrap();
+        for j in 0..2 {
+            assert!((found.first[j] - alone[j]).abs() < 1e-12, "{found:?}");
+            assert!((found.total[j] - (1.0 - alone[1 - j])).abs() < 1e-12, "{found:?}");
+        }
+        assert!(found.first[0] + found.first[1] < 0.99, "there is an interaction");
+    }
+
     #[test]
     fn moments_over_elements_equal_those_of_samples() {
         let surrogate = in_elements();

@@ -4,13 +4,15 @@ mod agreement;
 mod analysis;
 mod evaluate;
 mod records;
+mod sobol;
 
 pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
-pub use analysis::{FitQuality, SobolIndices};
+pub use analysis::FitQuality;
 pub use records::{
     Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
     StopReason, Training,
 };
+pub use sobol::SobolIndices;
 
 use crate::input::{InputSpace, Mesh};
 use crate::spectrum::{Component, Output};
