@@ -4,7 +4,8 @@
 //! nested Latin hypercube ([`design`]) and fits a sparse polynomial chaos expansion to each component: real and
 //! imaginary parts of eigenvalues, or of symmetric functions of those that come close, by values and derivatives
 //! ([`fit`]). The result is a [`surrogate`], kept in a small versioned file ([`artifact`]). [`eval`] samples it
-//! millions of times without the model; [`mod@reference`] samples the model itself, for comparison.
+//! millions of times without the model; [`mod@reference`] samples the model itself, for comparison. [`mod@reproduce`] compares
+//! all methods as the paper does, [`report`] puts what is found into text, JSON and pages.
 //!
 //! ```
 //! use pcc::{artifact, build::build, eval::monte_carlo, progress::Silent, study::Study};

@@ -204,7 +204,7 @@ fn the_paper_is_reproduced_into_a_folder() {
         assert_eq!(found, if of_paper[1] == "sparse" { 5 } else { 1 }, "{line}");
     }
     assert!(rows.iter().any(|row| row[7] == *"invariants" && row[8] == *"true"));
-    for line in ["table 2: the paper's methods", "the same methods on invariants", "table2/report.html"] {
+    for line in ["table 2: the paper's methods, with", "the same methods on invariants", "table2/report.html"] {
         assert!(text.contains(line), "{line} is missing");
     }
 }
@@ -694,6 +694,22 @@ fn an_interrupted_reproduction_keeps_the_rows_that_are_done() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains(&format!("{rows} rows that were done are in ")), "{message}");
     assert!(!folder.path().join("reproduction/report.html").exists());
+}
+
+#[test]
+fn a_reproduction_replaces_its_own_files_only() {
+    let folder = workplace();
+    for name in ["table2.csv", "table2.md", "figure3.svg", "report.html"] {
+        let output = folder.path().join(name.replace('.', "-"));
+        fs::create_dir(&output).unwrap();
+        fs::write(output.join(name), "mine").unwrap();
+        let path = output.to_str().unwrap();
+        let message = refusal(folder.path(), &["reproduce", "--only", "figure3", "-o", path]);
+        assert!(message.contains(&format!("{name}: exists and was not made by pcc")), "{message}");
+        assert_eq!(fs::read_to_string(output.join(name)).unwrap(), "mine");
+    }
+    output(folder.path(), &["reproduce", "--only", "figure3"]);
+    output(folder.path(), &["reproduce", "--only", "figure3"]);
 }
 
 /// A folder with the r = 2 study by invariants and its surrogate.

@@ -11,7 +11,7 @@ use pcc::progress::Silent;
 use pcc::reference::ModelSample;
 use pcc::spectrum::Modes;
 use pcc::study::Study;
-use pcc::surrogate::Surrogate;
+use pcc::surrogate::{StopReason, Surrogate};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use support::text;
@@ -204,11 +204,65 @@ fn divisions_end_where_every_element_decays_or_runs_run_out() {
     };
     // Polynomials of degree 2: only degree 3 can leave the highest order empty on both sides of the jump.
     let settled = build_jump("max_degree = 3");
-    assert_eq!(settled.mesh.elements().len(), 2);
+    assert_eq!((settled.mesh.elements().len(), settled.fit_of(0).stop), (2, StopReason::Settled));
     assert!(settled.fit_of(0).r2.unwrap() > 1.0 - 1e-12);
     let limited = build_jump("theta_1 = 0.0\n[design]\nmaximum = 50");
     assert_eq!(limited.training.counts.direct_computations, 45, "five elements, of which three are left");
-    assert_eq!(limited.mesh.elements().len(), 3);
+    assert_eq!((limited.mesh.elements().len(), limited.fit_of(0).stop), (3, StopReason::Limited));
+    assert_eq!(limited.training.levels, [9, 27, 45], "two parts each");
+}
+
+/// Degree 2 is exact from the second element on: nothing is left to divide, whatever θ₁ is.
+#[test]
+fn what_decays_completely_is_not_divided_and_constant_parts_of_varying_components_are_no_constants() {
+    let mut study = study(2, "-eigenvalues", "[fit]\nmethod = \"me-gpc\"\nmax_degree = 1\ntheta_1 = 0.0\n");
+    study.spectrum.modes = Modes::All;
+    let surrogate = build_with(&study, Box::new(Step), &Silent).unwrap();
+    assert_eq!(surrogate.mesh.elements().len(), 2);
+    let fit = surrogate.fit_of(0);
+    assert_eq!((fit.degree, fit.terms, fit.stop), (0, 1, StopReason::Settled));
+    assert!((fit.r2.unwrap() - 1.0).abs() < 1e-12);
+    assert_eq!(surrogate.fit_of(1).stop, StopReason::Constant);
+    assert!((surrogate.moments()[0].1 - 1.0).abs() < 1e-12);
+    let sobol = surrogate.sobol_indices(0).unwrap();
+    assert!((sobol.first[0] - 1.0).abs() < 1e-12 && sobol.total[1] < 1e-12);
+}
+
+/// One mode that grows on one side of ξ₁ = 0 and decays on the other.
+struct Step;
+
+impl Model for Step {
+    fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+        let re = if point[0] < 0.25 { -1.0 } else { 1.0 };
+        Ok(vec![Complex::new(re, 10.0), Complex::new(re, -10.0)])
+    }
+}
+
+/// Two points do not determine six terms, even with derivatives: the design is what the degree says, and the fit says so.
+#[test]
+fn least_squares_take_the_runs_they_say_and_tell_if_these_are_too_few() {
+    for (inputs, degree) in [(2, 2), (2, 4), (3, 2), (5, 2)] {
+        let lines = "method = \"gpc\"\nsolver = \"least-squares\"\noversampling = 1.0";
+        let study = study(inputs, "", &format!("[fit]\n{lines}\nmax_degree = {degree}\n"));
+        let surrogate = build(&study, &Silent).unwrap();
+        assert_eq!(surrogate.training.counts.direct_computations, study.design.initial as u64);
+        let fits = pcc::report::FitReport::warnings_of(&surrogate);
+        assert!(fits.iter().any(|warning| warning.contains("hardly determine all terms")), "{fits:?}");
+    }
+}
+
+/// Mode 3 alone is always stable, the model is never: nothing of this may be lost.
+#[test]
+fn modes_left_out_of_a_quadrature_are_warned_of() {
+    let mut study = study(3, "-eigenvalues", "[fit]\nmethod = \"me-gpc\"\n");
+    study.spectrum.modes = Modes::Ranks(vec![3]);
+    let mut inputs = study.inputs.inputs().to_vec();
+    inputs[0].marginal = pcc::input::Marginal::Uniform(pcc::input::Uniform::new(0.2, 0.5).unwrap());
+    study.inputs = pcc::input::InputSpace::new(inputs).unwrap();
+    let surrogate = build(&study, &Silent).unwrap();
+    assert!((surrogate.decision.proportion_error.unwrap() - 1.0).abs() < 1e-12);
+    let warnings = pcc::report::FitReport::warnings_of(&surrogate);
+    assert!(warnings.iter().any(|warning| warning.contains("may be off by 100 %")), "{warnings:?}");
 }
 
 #[test]

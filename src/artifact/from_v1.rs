@@ -237,6 +237,9 @@ fn expansion(expansion: v1::Expansion, index_sets: &[IndexSet]) -> Result<Expans
             v1::Stop::HighestDegree => StopReason::HighestDegree,
             v1::Stop::DesignExhausted => StopReason::DesignExhausted,
             v1::Stop::Constant => StopReason::Constant,
+            v1::Stop::GivenDegree => StopReason::GivenDegree,
+            v1::Stop::Settled => StopReason::Settled,
+            v1::Stop::Limited => StopReason::Limited,
         },
     })
 }

@@ -147,6 +147,9 @@ fn expansions(surrogate: &Surrogate) -> v1::Expansions {
                     StopReason::HighestDegree => v1::Stop::HighestDegree,
                     StopReason::DesignExhausted => v1::Stop::DesignExhausted,
                     StopReason::Constant => v1::Stop::Constant,
+                    StopReason::GivenDegree => v1::Stop::GivenDegree,
+                    StopReason::Settled => v1::Stop::Settled,
+                    StopReason::Limited => v1::Stop::Limited,
                 },
             }
         })

@@ -315,6 +315,12 @@ pub enum Stop {
     DesignExhausted,
     /// The values do not vary.
     Constant,
+    /// The degree was given: nothing was searched. Since format 1.2.
+    GivenDegree,
+    /// No element asks to be divided any more. Since format 1.2.
+    Settled,
+    /// Elements that ask to be divided are left. Since format 1.2.
+    Limited,
 }
 
 /// Section 6: how the surrogate was trained.

@@ -1,7 +1,7 @@
 //! Versions of the surrogate file and what this code can do with them.
 
 use crate::spectrum::OutputKind;
-use crate::surrogate::Surrogate;
+use crate::surrogate::{Expansion, StopReason, Surrogate};
 use std::cmp::Ordering;
 
 /// Major version written and read. It changes when older readers could misunderstand a file.
@@ -13,14 +13,19 @@ pub const MAJOR: u16 = 1;
 /// * 0: eigenvalue outputs, uniform inputs, one element.
 /// * 1: clusters, with modes in the order of their frequencies; the mode of a cluster with the lowest Im λ comes first,
 ///   equal frequencies within 10⁻¹² by Re λ.
-/// * 2: several elements; errors of an expansion are relative to the variance over all of them.
+/// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why the search
+///   for an expansion ended that full expansions have.
 pub const MINOR: u16 = 2;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers read
 /// what they can.
 pub(super) fn minor(surrogate: &Surrogate) -> u16 {
+    let is_full = |expansion: &Expansion| {
+        matches!(expansion.stop, StopReason::GivenDegree | StopReason::Settled | StopReason::Limited)
+    };
+    let has_elements = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
-    if surrogate.mesh.elements().len() > 1 { 2 } else { u16::from(has_clusters) }
+    if has_elements { 2 } else { u16::from(has_clusters) }
 }
 
 /// What this code can do with a file.

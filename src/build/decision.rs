@@ -146,9 +146,14 @@ fn forgotten_share(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run]) -> 
     forgotten.count() as f64 / runs.len() as f64
 }
 
-fn contradicts(surrogate: &Surrogate, values: &[Vec<f64>], i: usize, run: &Run) -> bool {
+/// max Re λ at run i over the modes that the surrogate carries, by the model.
+fn carried_max_re(surrogate: &Surrogate, values: &[Vec<f64>], i: usize) -> f64 {
     let exact: Vec<f64> = values.iter().map(|value| value[i]).collect();
-    let carried = spectral_abscissa(&surrogate.eigenvalues(&exact));
+    spectral_abscissa(&surrogate.eigenvalues(&exact))
+}
+
+fn contradicts(surrogate: &Surrogate, values: &[Vec<f64>], i: usize, run: &Run) -> bool {
+    let carried = carried_max_re(surrogate, values, i);
     let (model, scale) = (run.spectrum.max_re(), run.spectrum.largest());
     (model < 0.0) != (carried < 0.0) && (model - carried).abs() > RECOMBINATION * scale
 }
@@ -174,7 +179,7 @@ fn residual_quantiles(
 pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run], weights: &[f64]) -> Decision {
     let share = |holds: &dyn Fn(usize) -> bool| (0..runs.len()).filter(|&i| holds(i)).map(|i| weights[i]).sum::<f64>();
     let forgotten = share(&|i| contradicts(surrogate, values, i, &runs[i]));
-    let stable = share(&|i| runs[i].spectrum.max_re() < 0.0);
+    let stable = share(&|i| carried_max_re(surrogate, values, i) < 0.0);
     let proportion_error = (forgotten > 0.0).then_some(forgotten / stable).filter(|error| error.is_finite());
     Decision { max_re_residuals: Vec::new(), proportion_error }
 }

@@ -3,8 +3,8 @@
 //!
 //! Elements are divided one by one, as [`crate::fit::multi_element`] says, until none needs it, or the study's number of elements
 //! or of model runs would be exceeded. The runs of a divided element are spent: they count, but its parts have nodes of their
-//! own. Modes are grouped by the spectra at the nodes of the final mesh; if that changes the groups, all elements are projected
-//! anew, without another run.
+//! own. Modes are grouped by the spectra at the nodes of all elements; if new nodes change the groups, all elements are projected
+//! anew from the runs at hand, and divided further if the new components ask for it, until the groups stay.
 
 use super::BuildError;
 use super::decision;
@@ -30,6 +30,7 @@ const BLOCK: usize = 4096;
 pub(super) fn build(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
     let mut elements = Elements::new(study, Runner::of(study, model), observer)?;
     elements.run(0)?;
+    elements.levels.push(elements.spent);
     loop {
         elements.project_all()?;
         elements.divide()?;
@@ -58,7 +59,9 @@ struct Elements<'a> {
     /// Per element, one per component.
     projections: Vec<Vec<Projection>>,
     divisions: Vec<Division>,
-    /// All model runs so far, after each division.
+    /// All model runs so far.
+    spent: u64,
+    /// The same after the first element and after each division.
     levels: Vec<u64>,
 }
 
@@ -80,12 +83,9 @@ impl<'a> Elements<'a> {
             outputs: Vec::new(),
             projections: vec![Vec::new()],
             divisions: vec![Division { urgency: 0.0, inputs: Vec::new() }],
+            spent: 0,
             levels: Vec::new(),
         })
-    }
-
-    fn spent(&self) -> u64 {
-        self.levels.last().copied().unwrap_or(0)
     }
 
     /// Runs the model at the nodes of an element.
@@ -102,8 +102,7 @@ impl<'a> Elements<'a> {
         }
         self.observer.finish();
         self.runs[element] = runs;
-        let spent = self.spent() + count as u64;
-        self.levels.push(spent);
+        self.spent += count as u64;
         Ok(())
     }
 
@@ -161,21 +160,28 @@ impl<'a> Elements<'a> {
                 self.run(part)?;
                 self.project(part)?;
             }
+            self.levels.push(self.spent);
         }
         Ok(())
     }
 
+    /// The inputs along which an element asks to be halved and can be; `None` if there are none. What decays completely asks for
+    /// nothing, even if θ₁ is zero.
+    fn asks(&self, element: usize, settings: &MultiElement) -> Option<Vec<usize>> {
+        let Division { urgency, inputs } = &self.divisions[element];
+        let can_halve = |&input: &usize| self.mesh.can_halve(element, input);
+        let inputs: Vec<usize> = inputs.iter().copied().filter(can_halve).collect();
+        (*urgency > 0.0 && *urgency >= settings.theta_1 && !inputs.is_empty()).then_some(inputs)
+    }
+
     /// The element that needs it most, and the inputs along which the limits leave room for halves.
     fn next_division(&self, settings: &MultiElement) -> Option<(usize, Vec<usize>)> {
-        let runs_left = (self.study.design.maximum as u64).saturating_sub(self.spent()) / self.grid.len() as u64;
+        let runs_left = (self.study.design.maximum as u64).saturating_sub(self.spent) / self.grid.len() as u64;
         let room = settings.elements - self.runs.len();
-        let can_halve = |element: usize, input: usize| self.mesh.can_halve(element, input);
-        let candidates = (0..self.divisions.len()).filter_map(|element| {
-            let Division { urgency, inputs } = &self.divisions[element];
-            let inputs: Vec<usize> = inputs.iter().copied().filter(|&input| can_halve(element, input)).collect();
-            (*urgency >= settings.theta_1 && !inputs.is_empty()).then_some((element, *urgency, inputs))
-        });
-        let (element, _, mut inputs) = candidates.reduce(|most, next| if next.1 > most.1 { next } else { most })?;
+        let urgency = |element: usize| self.divisions[element].urgency;
+        let candidates = (0..self.divisions.len()).filter_map(|element| Some((element, self.asks(element, settings)?)));
+        let (element, mut inputs) =
+            candidates.reduce(|most, next| if urgency(next.0) > urgency(most.0) { next } else { most })?;
         let fits = |along: usize| {
             let parts = 1u64.checked_shl(along as u32).unwrap_or(u64::MAX);
             parts - 1 <= room as u64 && parts <= runs_left
@@ -198,7 +204,15 @@ impl<'a> Elements<'a> {
         for element in 0..self.runs.len() {
             values.iter_mut().zip(self.values(element)?).for_each(|(all, part)| all.extend(part));
         }
-        let variances: Vec<f64> = values.iter().map(|values| weighted_variance(values, &weights)).collect();
+        let largest = self.runs.iter().flatten().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
+        let resolutions = super::evaluations::resolutions(&self.outputs, largest);
+        // Zero for components that do not vary over all elements.
+        let variance = |(values, resolution): (&Vec<f64>, f64)| {
+            Some(weighted_variance(values, &weights))
+                .filter(|variance| *variance > resolution * resolution)
+                .unwrap_or(0.0)
+        };
+        let variances: Vec<f64> = values.iter().zip(resolutions).map(variance).collect();
         let is_done = self.is_done();
         let fitted: Vec<Vec<Fitted>> = self
             .projections
@@ -207,7 +221,7 @@ impl<'a> Elements<'a> {
             .collect();
         let final_mesh = weights.len() as u64;
         let counts =
-            Counts { values: final_mesh, gradients: 0, failed: 0, final_mesh, direct_computations: self.spent() };
+            Counts { values: final_mesh, gradients: 0, failed: 0, final_mesh, direct_computations: self.spent };
         let mut surrogate =
             record::of_elements(self.study, self.mesh, self.outputs, &fitted, counts, self.levels.clone());
         let runs: Vec<Run> = self.runs.into_iter().flatten().collect();
@@ -219,15 +233,16 @@ impl<'a> Elements<'a> {
     /// Whether no element asks to be divided any more.
     fn is_done(&self) -> bool {
         match &self.study.fit.method {
-            FitMethod::MultiElement(settings) => self.divisions.iter().all(|next| next.urgency < settings.theta_1),
+            FitMethod::MultiElement(settings) => (0..self.runs.len()).all(|e| self.asks(e, settings).is_none()),
             _ => false,
         }
     }
 
     /// Errors are relative to the variance over all elements.
     fn fitted(&self, projection: &Projection, variance: f64, is_done: bool) -> Fitted {
-        let is_constant = projection.variance == 0.0;
-        let (indices, coefficients) = match is_constant {
+        // Inside an element a component can be constant that varies from one to the next.
+        let (is_constant, varies) = (projection.variance == 0.0, variance > 0.0);
+        let (indices, coefficients) = match is_constant || !varies {
             true => {
                 let constant = MultiIndex::constant(self.study.inputs.dimension());
                 (IndexSet::from_unsorted(vec![constant]), projection.coefficients[..1].to_vec())
@@ -235,20 +250,20 @@ impl<'a> Elements<'a> {
             false => (self.indices.clone(), projection.coefficients.clone()),
         };
         let r2 = 1.0 - projection.mean_square_residual / variance;
-        let degree = if is_constant { 0 } else { self.study.fit.method.max_degree() };
+        let degree = if is_constant || !varies { 0 } else { self.study.fit.method.max_degree() };
         Fitted {
             indices,
             coefficients,
-            errors: (!is_constant).then_some(ErrorMeasures { r2, s2: None, corrected_s2: None }),
+            errors: varies.then_some(ErrorMeasures { r2, s2: None, corrected_s2: None }),
             leave_one_out_residuals: None,
             blind_residuals: None,
             derivative_weight: None,
             degree,
-            stop: match (is_constant, &self.study.fit.method) {
-                (true, _) => Stop::Constant,
-                (false, FitMethod::MultiElement(_)) if is_done => Stop::Accurate,
-                (false, FitMethod::MultiElement(_)) => Stop::DesignExhausted,
-                (false, _) => Stop::HighestDegree,
+            stop: match (varies, &self.study.fit.method) {
+                (false, _) => Stop::Constant,
+                (true, FitMethod::MultiElement(_)) if is_done => Stop::Settled,
+                (true, FitMethod::MultiElement(_)) => Stop::Limited,
+                (true, _) => Stop::GivenDegree,
             },
         }
     }

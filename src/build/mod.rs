@@ -1,4 +1,4 @@
-//! The build: design → model runs → components → one sparse expansion each → surrogate, until the stopping rule holds.
+//! The build: design → model runs → components → one expansion each → surrogate, until the stopping rule holds.
 
 mod components;
 mod decision;
@@ -58,10 +58,11 @@ impl BuildError {
 
 /// Builds the surrogate of a study on the current rayon thread pool: the same bits for any number of threads.
 ///
-/// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives enter the fit beside the values if the study wants them and the model has them. All components share one
-/// nested design. Level by level it grows by one step until every component is fitted well enough and, if the study
-/// asks for it, the estimated error of the stability proportion is small enough, or has not fallen while the design
-/// grew by four levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
+/// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives enter the
+/// fit beside the values if the study wants them and the model has them. All components share one nested design. Level by level
+/// it grows by one step until every component is fitted well enough and, if the study asks for it, the estimated error of the
+/// stability proportion is small enough, or has not fallen while the design grew by four levels to twice its size. Modes are
+/// grouped anew at each level; no model run is repeated or dropped.
 ///
 /// # Errors
 ///
@@ -106,7 +107,7 @@ pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer)
             fit.forget(&outputs);
             former = None;
         }
-        let next = study.design.next_size(size);
+        let next = study.design.next_size(size).filter(|_| !study.fit.method.has_fixed_design());
         let values = evaluations.components(&outputs)?;
         let gradients = evaluations.gradients(&outputs);
         let resolutions = evaluations.resolutions(&outputs);

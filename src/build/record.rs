@@ -105,6 +105,9 @@ fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
             Stop::HighestDegree => StopReason::HighestDegree,
             Stop::DesignExhausted => StopReason::DesignExhausted,
             Stop::Constant => StopReason::Constant,
+            Stop::GivenDegree => StopReason::GivenDegree,
+            Stop::Settled => StopReason::Settled,
+            Stop::Limited => StopReason::Limited,
         },
     }
 }

@@ -7,8 +7,8 @@
 //!   squares there. Its leave-one-out error would follow as for any regression, but says nothing: for every node there are others
 //!   with the same coordinate, so what the degree misses between them is never seen (the clutch with p = 6, r = 3: S² = 1 − 5·10⁻⁷
 //!   where the proportion is 7 % off);
-//! * **least squares** ([`least_squares`]) on the points of a design, equations 7 and 8, with derivatives if there are any. Their
-//!   weight is the one with the best leave-one-out S².
+//! * **least squares** ([`least_squares`]) on the points of a design, equations 7 and 8, with derivatives if there are any. The
+//!   weight of the equations of derivatives is the one with the best leave-one-out S².
 
 use super::{Fitted, Stop, WEIGHTS};
 use crate::design::TensorGauss;
@@ -20,8 +20,12 @@ use crate::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
 use nalgebra::DMatrix;
 use std::ops::Range;
 
-/// Nodes whose polynomials are held in memory together.
+/// Nodes whose polynomials are held in memory together: at most so many, and so many values of polynomials.
 const BLOCK: usize = 2048;
+const BLOCK_VALUES: usize = 1 << 21;
+
+/// Blocks whose sums are held in memory together.
+const BLOCKS_IN_FLIGHT: usize = 16;
 
 /// {α : |α| ≤ p} for `inputs` variables.
 ///
@@ -105,30 +109,32 @@ struct Blocks<'a> {
 }
 
 impl Blocks<'_> {
-    fn range(&self, block: usize) -> Range<usize> {
-        block * BLOCK..self.grid.len().min((block + 1) * BLOCK)
-    }
-
-    /// `work` with the nodes and the matrix ψ_α(ξ_i) of every block.
-    fn map<T: Send>(&self, work: impl Fn(Range<usize>, DMatrix<f64>) -> T + Sync) -> Result<Vec<T>, Interrupted> {
-        let degree = self.indices.last().map_or(0, |alpha| alpha.iter().sum::<u16>());
-        try_map(self.grid.len().div_ceil(BLOCK), |block| {
-            self.observer.check()?;
-            let range = self.range(block);
-            let tables = BasisTables::new(&self.grid.nodes(range.clone()), self.recurrences, degree.into());
-            Ok(work(range, tables.columns(self.indices)))
-        })
-    }
-
-    /// Σ_i w_i ψ_α(ξ_i) y_i: a row per index, a column per component.
+    /// Σ_i w_i ψ_α(ξ_i) y_i: a row per index, a column per component. Sums are made block by block in order, so they do not depend
+    /// on the number of threads.
     fn coefficients(&self) -> Result<DMatrix<f64>, Interrupted> {
-        let parts = self.map(|range, basis| {
-            let weights: Vec<f64> = self.grid.weights(range.clone()).collect();
-            let weighted =
-                DMatrix::from_fn(range.len(), self.values.len(), |i, id| weights[i] * self.values[id][range.start + i]);
-            basis.tr_mul(&weighted)
-        })?;
-        Ok(parts.into_iter().fold(DMatrix::zeros(self.indices.len(), self.values.len()), |sum, part| sum + part))
+        let nodes = (BLOCK_VALUES / self.indices.len()).clamp(1, BLOCK);
+        let blocks = self.grid.len().div_ceil(nodes);
+        let mut sum = DMatrix::zeros(self.indices.len(), self.values.len());
+        for first in (0..blocks).step_by(BLOCKS_IN_FLIGHT) {
+            let parts = try_map(BLOCKS_IN_FLIGHT.min(blocks - first), |number| {
+                self.observer.check()?;
+                let start = (first + number) * nodes;
+                Ok(self.part(start..self.grid.len().min(start + nodes)))
+            })?;
+            parts.into_iter().for_each(|part| sum += part);
+        }
+        Ok(sum)
+    }
+
+    /// The sum over some nodes.
+    fn part(&self, range: Range<usize>) -> DMatrix<f64> {
+        let degree = self.indices.last().map_or(0, |alpha| alpha.iter().sum::<u16>());
+        let nodes = self.grid.nodes(range.clone());
+        let basis = BasisTables::new(&nodes, self.recurrences, degree.into()).columns(self.indices);
+        let weights: Vec<f64> = self.grid.weights(range.clone()).collect();
+        let weighted =
+            DMatrix::from_fn(range.len(), self.values.len(), |i, id| weights[i] * self.values[id][range.start + i]);
+        basis.tr_mul(&weighted)
     }
 }
 
@@ -147,27 +153,28 @@ pub fn least_squares(
         return Ok(Fitted::constant(tables.inputs(), response.values));
     };
     let degree = indices.last().map_or(0, |alpha| alpha.iter().sum());
+    let s2 = |fitted: &Fitted| fitted.errors.and_then(|errors: ErrorMeasures| errors.s2).unwrap_or(f64::NEG_INFINITY);
     let fit = |weight: f64| -> Result<Fitted, Interrupted> {
         let mut basis = ActiveBasis::constant(tables, response.with_weight(weight), variance, weight, observer)?;
         basis.extend(indices[1..].to_vec())?;
-        // Terms that the points cannot tell apart are left out: more points would.
-        let is_full = basis.indices().len() == indices.len();
-        Fitted::new(&basis, degree, if is_full { Stop::HighestDegree } else { Stop::DesignExhausted })
+        // Terms that the points cannot tell apart are left out, and where a point alone determines one, nothing is known there.
+        let fitted = Fitted::new(&basis, degree, Stop::GivenDegree)?;
+        let is_determined = basis.indices().len() == indices.len() && s2(&fitted).is_finite();
+        Ok(if is_determined { fitted } else { Fitted { stop: Stop::DesignExhausted, ..fitted } })
     };
     if response.gradients.is_none() {
         return fit(0.0);
     }
-    let s2 = |fitted: &Fitted| fitted.errors.and_then(|errors: ErrorMeasures| errors.s2).unwrap_or(f64::NEG_INFINITY);
-    let mut best: Option<(Fitted, f64)> = None;
-    for weight in WEIGHTS {
+    let [full_weight, others @ ..] = WEIGHTS;
+    let mut best = (fit(full_weight)?, full_weight);
+    for weight in others {
         let found = fit(weight)?;
         // Fewer values than terms leave terms out: such a fit is no full expansion.
-        let is_better = best.as_ref().is_none_or(|(best, _)| found.stop == best.stop && s2(&found) > s2(best));
-        if is_better {
-            best = Some((found, weight));
+        if found.stop == Stop::GivenDegree && s2(&found) > s2(&best.0) {
+            best = (found, weight);
         }
     }
-    let (fitted, weight) = best.map_or_else(|| fit(1.0).map(|fitted| (fitted, 1.0)), Ok)?;
+    let (fitted, weight) = best;
     Ok(Fitted { derivative_weight: Some(weight), ..fitted })
 }
 
@@ -227,7 +234,7 @@ mod tests {
             least_squares(&tables, Response::of(&values[..count], 0.0), &indices, &Silent).unwrap()
         };
         let exact = fit(25, 3);
-        assert_eq!((exact.stop, exact.indices.len()), (Stop::HighestDegree, 10));
+        assert_eq!((exact.stop, exact.indices.len()), (Stop::GivenDegree, 10));
         assert!(exact.errors.unwrap().s2.unwrap() > 1.0 - TOLERANCE);
         assert_eq!(fit(8, 3).stop, Stop::DesignExhausted);
     }

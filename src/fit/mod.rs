@@ -33,6 +33,12 @@ pub enum Stop {
     DesignExhausted,
     /// The values do not vary: the mean is exact.
     Constant,
+    /// The degree was given: nothing was searched.
+    GivenDegree,
+    /// No element asks to be divided any more.
+    Settled,
+    /// Elements that ask to be divided are left, because there may be no more of them, or no more model runs.
+    Limited,
 }
 
 /// Leave-one-out residuals at points on which the fit was not tuned, so that they flatter it little or not at all: for the

@@ -14,9 +14,10 @@
 //!
 //! r_j = c²_{p e_j} / Σ_{|α| = p} c_α²,
 //!
-//! says along which inputs: all with r_j ≥ θ₂ max r_k are halved. Elements are taken one by one, the largest η^γ w first, so that
-//! a limit on their number is spent where it is needed most; near the limit an element is halved along fewer inputs, those with
-//! the largest r_j.
+//! says along which inputs: all with r_j ≥ θ₂ max r_k are halved; if only products of inputs carry the highest order, the share
+//! of an input is that of the products it is in. Wan and Karniadakis divide all elements that ask for it at once; here they are
+//! taken one by one, the largest η^γ w first, so that a limit on their number is spent where it is needed most. Near the limit an
+//! element is halved along fewer inputs, those with the largest r_j.
 
 use super::gpc::Projection;
 use crate::index_set::IndexSet;

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 use std::ops::Deref;
+use std::sync::Arc;
 
 /// A multi-index α: the polynomial degree in each of r variables.
 ///
@@ -61,7 +62,7 @@ impl PartialOrd for MultiIndex {
     }
 }
 
-/// A set of distinct multi-indices in canonical order.
+/// A set of distinct multi-indices in canonical order. Copies share their memory: elements and components often have the same.
 ///
 /// # Examples
 ///
@@ -72,25 +73,25 @@ impl PartialOrd for MultiIndex {
 /// assert_eq!(set.highest_degrees(2), [0, 1]);
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
-pub struct IndexSet(Vec<MultiIndex>);
+pub struct IndexSet(Arc<[MultiIndex]>);
 
 impl IndexSet {
     /// Sorts `indices` and drops repetitions.
     pub fn from_unsorted(mut indices: Vec<MultiIndex>) -> Self {
         indices.sort_unstable();
         indices.dedup();
-        Self(indices)
+        Self(indices.into())
     }
 
     /// Takes `indices` as they are if they are sorted and distinct.
     pub fn from_sorted(indices: Vec<MultiIndex>) -> Option<Self> {
-        indices.is_sorted_by(|a, b| a < b).then_some(Self(indices))
+        indices.is_sorted_by(|a, b| a < b).then(|| Self(indices.into()))
     }
 
     /// The highest degree in each of `inputs` variables.
     pub fn highest_degrees(&self, inputs: usize) -> Vec<u16> {
         let mut highest = vec![0; inputs];
-        for alpha in &self.0 {
+        for alpha in self.0.iter() {
             for (maximum, &degree) in highest.iter_mut().zip(alpha.iter()) {
                 *maximum = degree.max(*maximum);
             }

@@ -1,7 +1,8 @@
 //! A box divided into elements: axis-parallel boxes of the standardized variables, found by a tree of splits.
 //!
 //! Multi-element expansions have one set of polynomials per element, in the local variables (ξ − center)/half width
-//! (equation 10 of the paper). A global expansion has one element, the whole box \[−1, 1\]ʳ.
+//! (equation 10 of the paper). A global expansion has one element, the whole box \[−1, 1\]ʳ. All inputs are uniform, so the
+//! probability of an element is its volume over 2ʳ.
 
 use thiserror::Error;
 

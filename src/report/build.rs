@@ -1,7 +1,7 @@
 //! What a build spent and how well each component is fitted.
 
 use super::table::{Align, Table, count, significant};
-use crate::surrogate::{Expansion, SettingValue, StopReason, Surrogate};
+use crate::surrogate::{SettingValue, StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
@@ -10,6 +10,9 @@ const POOR: f64 = 0.9;
 
 /// Estimated relative error of the proportion from which a study that set no tolerance is warned.
 const LARGE_ERROR: f64 = 0.05;
+
+/// Design of quadratures.
+const QUADRATURE: &str = "tensor-gauss";
 
 /// More levels than this are abbreviated.
 const MANY_LEVELS: usize = 6;
@@ -96,24 +99,45 @@ impl FitReport {
                 _ => None,
             }
         };
-        let is_blind = |fit: &Self| fit.r2.is_some() && fit.s2.is_none();
-        if fits.iter().all(|fit| fit.r2.is_none() || is_blind(fit)) && fits.iter().any(is_blind) {
-            return vec![
-                "no point was left out, so nothing is known of the error between the points; check with pcc compare or certify"
+        fits.iter().filter_map(warning).collect()
+    }
+
+    /// The same for a method, which says what else there is to know and what can be done.
+    fn warnings_by_method(surrogate: &Surrogate, fits: &[Self]) -> Vec<String> {
+        let has = |stop: StopReason| fits.iter().any(|fit| fit.stop == stop.describe());
+        if surrogate.training.design == QUADRATURE {
+            let mut warnings = vec![
+                "quadrature leaves no point out, so nothing is known of the error between its nodes; check with pcc compare or \
+                 certify"
                     .to_owned(),
             ];
+            if has(StopReason::Limited) {
+                warnings.push(
+                    "elements that fit.theta_1 asks to divide are left; raise fit.elements or design.maximum for more"
+                        .to_owned(),
+                );
+            }
+            return warnings;
         }
-        let mut warnings: Vec<String> = fits.iter().filter_map(warning).collect();
-        if fits.iter().any(|fit| fit.stop == StopReason::DesignExhausted.describe()) {
-            warnings
-                .push("the design reached design.maximum before the fit was accurate; raise it for more".to_owned());
+        let mut warnings = Self::warnings(fits);
+        match surrogate.training.method.as_str() {
+            "gpc" if has(StopReason::DesignExhausted) => {
+                warnings.push("the points hardly determine all terms; raise fit.oversampling or lower the degree".to_owned());
+            }
+            "gpc" if surrogate.decision.proportion_error.is_none() => warnings.push(
+                "one design does not tell how far the proportion is off, and S² says little of it; check with pcc compare or certify"
+                    .to_owned(),
+            ),
+            _ if has(StopReason::DesignExhausted) => warnings
+                .push("the design reached design.maximum before the fit was accurate; raise it for more".to_owned()),
+            _ => {}
         }
         warnings
     }
 
     /// The same, and what is known of the proportion.
     pub fn warnings_of(surrogate: &Surrogate) -> Vec<String> {
-        let mut warnings = Self::warnings(&Self::of(surrogate));
+        let mut warnings = Self::warnings_by_method(surrogate, &Self::of(surrogate));
         let asked = surrogate.training.settings.iter().find(|setting| setting.key == "proportion_tolerance");
         let tolerance = asked.and_then(|setting| match setting.value {
             SettingValue::Number(tolerance) => Some(tolerance),
@@ -130,13 +154,6 @@ impl FitReport {
             ));
         }
         warnings.extend(Self::distrusted(surrogate));
-        let is_exhausted = |expansion: &Expansion| expansion.stop == StopReason::DesignExhausted;
-        if surrogate.training.method == "me-gpc" && surrogate.expansions.iter().any(is_exhausted) {
-            warnings.push(
-                "elements that fit.theta_1 asks to divide are left; raise fit.elements or design.maximum for more"
-                    .to_owned(),
-            );
-        }
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if spectrum.modes leaves out modes that can become unstable, \
@@ -241,15 +258,14 @@ impl fmt::Display for BuildReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} model runs{}{} (design levels {}), {:.2} s, seed {}\n",
+            "{}: {} model runs{} ({}), {:.2} s, seed {}\n",
             self.study,
             count(self.direct_computations),
             with_derivatives(self.runs_with_derivatives, self.direct_computations),
             match self.elements {
-                1 => String::new(),
-                many => format!(", {} in the final mesh of {many} elements", count(self.final_mesh_computations)),
+                1 => format!("design levels {}", level_list(&self.levels)),
+                many => format!("{} in the final mesh of {many} elements", count(self.final_mesh_computations)),
             },
-            level_list(&self.levels),
             self.elapsed_seconds,
             self.seed
         )?;

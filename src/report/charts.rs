@@ -42,7 +42,7 @@ pub(super) fn density_chart(title: &str, samples: &[(&str, Color, &[f64])]) -> C
         description: "How often the spectral abscissa takes which value: everything right of zero is unstable."
             .to_owned(),
         x: Axis::linear("max Re λ in 1/s"),
-        y: Axis::logarithmic("density in s"),
+        y: Axis::logarithmic("probability density in s"),
         series: series.collect(),
         guides: vec![Guide::Vertical(0.0, "stability limit".to_owned())],
     }
@@ -59,7 +59,7 @@ pub(super) fn validation_chart(model: &[f64], surrogate: &[f64]) -> Chart {
             model.len()
         ),
         x: Axis::linear("max Re λ of the model in 1/s"),
-        y: Axis::linear("of the surrogate in 1/s"),
+        y: Axis::linear("max Re λ of the surrogate in 1/s"),
         series: vec![Series::new("", Color::Blue, marks)],
         guides: vec![
             Guide::Diagonal,
@@ -72,11 +72,13 @@ pub(super) fn validation_chart(model: &[f64], surrogate: &[f64]) -> Chart {
 /// What each total degree contributes to each component.
 pub(super) fn spectrum_chart(surrogate: &Surrogate) -> Chart {
     let moments = surrogate.moments();
+    let highest = (0..moments.len()).map(|id| by_degree(surrogate, id).len()).max().unwrap_or(0);
+    let degrees = (1..highest).map(|degree| degree.to_string()).collect();
     let components = surrogate.components().into_iter().enumerate();
     let series = components.filter(|(_, component)| moments[component.id].1 > 0.0).map(|(number, component)| {
         let deviation = moments[component.id].1.sqrt() / component.scale.abs();
         let shares = by_degree(surrogate, component.id).into_iter().enumerate().skip(1);
-        let line = shares.map(|(degree, square)| [degree as f64, short(square.sqrt() / deviation)]).collect();
+        let line = shares.map(|(degree, square)| [degree as f64 - 1.0, short(square.sqrt() / deviation)]).collect();
         let symbols = [Symbol::Circle, Symbol::Square, Symbol::Triangle, Symbol::Diamond];
         let symbol = symbols[number / Color::ALL.len() % symbols.len()];
         Series::new(component.name.clone(), color(number), Marks::Symbols(line, symbol))
@@ -85,9 +87,9 @@ pub(super) fn spectrum_chart(surrogate: &Surrogate) -> Chart {
         title: "Coefficients by degree".to_owned(),
         description:
             "Root of the sum of squared coefficients of each total degree, relative to the standard deviation of the \
-                      component: the faster it falls, the smoother the component."
+                      component, over all elements: the faster it falls, the smoother the component."
                 .to_owned(),
-        x: Axis::linear("total degree |α|"),
+        x: Axis::categories("total degree |α|", degrees),
         y: Axis::logarithmic("share of the standard deviation"),
         series: series.collect(),
         guides: Vec::new(),

@@ -19,6 +19,6 @@ pub use certify::CertifyReport;
 pub use compare::CompareReport;
 pub use eval::EvalReport;
 pub use inspect::InspectReport;
-pub use reproduction::{figure_sheets, table_2};
+pub use reproduction::{figure_sheets, short_table_2, table_2};
 pub use surrogate_page::{SurrogatePage, Validation};
 pub use table::{Align, Table, count, significant};

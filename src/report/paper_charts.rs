@@ -1,6 +1,6 @@
 //! The paper's figures 3 and 4, and the errors of all methods over what they cost.
 
-use super::charts::{color, points};
+use super::charts::points;
 use crate::plot::{Axis, Chart, Color, Guide, Marks, Series, Symbol};
 use crate::reproduce::{Cloud, PAIR, Row, TABLE_2};
 use nalgebra::Complex;
@@ -66,17 +66,22 @@ fn uncertain(inputs: usize) -> String {
     format!("r = {inputs}")
 }
 
-/// A method of the table: its name in pictures, and which rows are its own.
-type Method = (&'static str, fn(&Row) -> bool, Symbol);
+/// A method of the table: its name and mark in pictures, and which rows are its own.
+type Method = (&'static str, Color, Symbol, fn(&Row) -> bool);
 
-/// The methods that are drawn, in the order of the table.
-const METHODS: [Method; 6] = [
-    ("gPC", |row| row.method == "gpc" && row.target == "eigenvalues", Symbol::Square),
-    ("multi-element gPC", |row| row.method == "me-gpc" && row.target == "eigenvalues", Symbol::Diamond),
-    ("sparse PC", |row| row.method == "sparse" && row.target == "eigenvalues", Symbol::Triangle),
-    ("gPC of invariants", |row| row.method != "sparse" && row.target == "invariants", Symbol::Square),
-    ("invariants", |row| row.method == "sparse" && row.target == "invariants" && !row.derivatives, Symbol::Circle),
-    ("invariants with derivatives", |row| row.method == "sparse" && row.derivatives, Symbol::Diamond),
+fn is_of(row: &Row, method: &str, target: &str) -> bool {
+    (row.method, row.target, row.derivatives) == (method, target, false)
+}
+
+/// The methods that are drawn, in the order of the table: a colour per method, a symbol per target.
+const METHODS: [Method; 7] = [
+    ("gPC", Color::Blue, Symbol::Circle, |row| is_of(row, "gpc", "eigenvalues")),
+    ("ME-gPC", Color::Purple, Symbol::Circle, |row| is_of(row, "me-gpc", "eigenvalues")),
+    ("sparse PC", Color::Red, Symbol::Circle, |row| is_of(row, "sparse", "eigenvalues")),
+    ("gPC of invariants", Color::Blue, Symbol::Diamond, |row| is_of(row, "gpc", "invariants")),
+    ("ME-gPC of invariants", Color::Purple, Symbol::Diamond, |row| is_of(row, "me-gpc", "invariants")),
+    ("sparse PC of invariants", Color::Red, Symbol::Diamond, |row| is_of(row, "sparse", "invariants")),
+    ("the same with derivatives", Color::Orange, Symbol::Triangle, |row| row.derivatives),
 ];
 
 /// Error of the proportion over model runs for all methods with so many inputs, compared on `runs` points; `None` without rows.
@@ -85,34 +90,37 @@ pub(super) fn cost_chart(rows: &[Row], inputs: usize, runs: u64) -> Option<Chart
     // About half a point in a fifth of all points: what is below is drawn there.
     let smallest = 100.0 * 2.5 / runs as f64;
     let at = |x: f64, y: f64| [x, y.max(smallest)];
-    let mut series: Vec<Series> = METHODS
-        .iter()
-        .enumerate()
-        .map(|(number, (name, holds, symbol))| {
-            let found = own.iter().filter(|row| holds(row));
-            let symbols = found
-                .filter_map(|row| Some(at(row.direct_computations as f64, row.stability_error_percent?)))
-                .collect();
-            Series::new(*name, color(number), Marks::Symbols(symbols, *symbol))
-        })
-        .collect();
-    let paper = TABLE_2.iter().filter(|row| row.inputs == inputs);
-    let printed = paper.flat_map(|row| {
-        let corners = row.direct_computations.into_iter().zip(row.stability_error);
-        corners.map(|(x, y)| at(x, y)).collect::<Vec<_>>()
-    });
-    series.push(Series::new("the paper's table", Color::Gray, Marks::Symbols(printed.collect(), Symbol::Circle)));
+    let of_method = |(name, color, symbol, holds): &Method| {
+        let found = own.iter().filter(|row| holds(row));
+        let symbols =
+            found.filter_map(|row| Some(at(row.direct_computations as f64, row.stability_error_percent?))).collect();
+        Series::new(*name, *color, Marks::Symbols(symbols, *symbol))
+    };
+    let series = papers_series(inputs).into_iter().chain(METHODS.iter().map(of_method));
     (!own.is_empty()).then(|| Chart {
         title: uncertain(inputs),
         description: format!(
-            "Error of the stability proportion over all model runs spent, {}. Errors below what {runs} points resolve are drawn at \
-             the lower edge; the paper counts the runs of the final mesh, and of its sparse rows the smallest and largest values are \
-             drawn.",
+            "Error of the stability proportion over model runs, {}, by all methods and as the paper prints it.",
             uncertain(inputs)
         ),
         x: Axis::logarithmic("model runs"),
         y: Axis::logarithmic("error of the proportion in %"),
-        series,
+        series: series.collect(),
         guides: Vec::new(),
     })
+}
+
+/// The paper's rows: points, and for its sparse rows the box of the ranges it prints.
+fn papers_series(inputs: usize) -> Vec<Series> {
+    let rows = || TABLE_2.iter().filter(|row| row.inputs == inputs);
+    let mut series = Vec::new();
+    let printed = rows().filter(|row| row.method != "sparse");
+    let printed = printed.map(|row| [row.direct_computations[0], row.stability_error[0]]).collect();
+    series.push(Series::new("the paper's table", Color::Gray, Marks::Symbols(printed, Symbol::Square)));
+    for row in rows().filter(|row| row.method == "sparse") {
+        let ([left, right], [low, high]) = (row.direct_computations, row.stability_error);
+        let corners = vec![[left, low], [right, low], [right, high], [left, high], [left, low]];
+        series.push(Series::new("the paper's table", Color::Gray, Marks::Line(corners)));
+    }
+    series
 }

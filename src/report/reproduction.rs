@@ -11,6 +11,10 @@ use crate::reproduce::{Closer, Cloud, MOST_INPUTS, PAIR, PaperRow, Range, Reprod
 /// Errors below this are not worth digits, in percent.
 const SMALLEST_ERROR: f64 = 1e-4;
 
+const INVARIANTS_HEADING: &str = "The same methods on invariants";
+const INVARIANTS: &str = "Expanded are modes 1 and 2 themselves and, of the two modes that coalesce, the mean of the eigenvalues and c0, minus \
+                          their squared half difference. Least squares take two equations per term.";
+
 /// Panels side by side in a file.
 const COLUMNS: usize = 2;
 
@@ -26,6 +30,27 @@ pub fn table_2(rows: &[Row]) -> Vec<Table> {
 fn is_papers(row: &Row) -> bool {
     row.target == "eigenvalues"
 }
+
+/// The same for a terminal: without errors of means and variances, and without the paper's orders.
+pub fn short_table_2(rows: &[Row]) -> Vec<Table> {
+    const LEFT_OUT: [&str; 2] = ["mean %", "variance %"];
+    let shortened = |table: &Table| {
+        let heads = &table.rows()[0];
+        let is_kept = |k: usize| {
+            let about = if heads[k] == PAPER { heads[k - 1].as_str() } else { heads[k].as_str() };
+            !(LEFT_OUT.contains(&about) || heads[k] == PAPER && about == "order")
+        };
+        let kept: Vec<usize> = (0..heads.len()).filter(|&k| is_kept(k)).collect();
+        let columns: Vec<(&str, Align)> = kept.iter().map(|&k| (heads[k].as_str(), table.aligns()[k])).collect();
+        let mut short = Table::new(&columns);
+        table.rows()[1..].iter().for_each(|row| short.row(kept.iter().map(|&k| row[k].as_str())));
+        short
+    };
+    table_2(rows).iter().map(shortened).collect()
+}
+
+/// Head of a column with the paper's figures for the column before it.
+const PAPER: &str = "paper";
 
 fn papers_methods(groups: &[Vec<&Row>]) -> Table {
     let right = Align::Right;
@@ -246,27 +271,47 @@ impl Reproduction {
 
     fn table_section(&self, page: &mut Page) {
         page.section("Table 2");
-        page.paragraph(&format!(
-            "Every build is compared with the model on the same {} points (seed {}) for each number r of uncertain parameters. Sparse \
-             builds are made from five designs; smallest and largest values are given. Runs are all model runs spent; the paper counts \
-             those of the final mesh. Errors are of the mean, of the variance and of the proportion of stability; for mean and \
-             variance the larger one of Re λ of both modes is given, and the paper does not say which it means. Its 0.18 % for gPC \
-             with r = 2 is probably a misprint: it has 6.45 % on either side.",
-            count(self.options().runs),
-            self.options().seed
-        ));
+        page.paragraph(&self.explanation());
         for (number, table) in table_2(&self.rows).iter().enumerate() {
             if number == 1 {
-                page.section("The same methods on invariants");
-                page.paragraph(
-                    "Expanded are the mean and the squared half difference of the two eigenvalues that coalesce, instead of the \
-                     eigenvalues. Least squares take two equations per term.",
-                );
+                page.section(INVARIANTS_HEADING);
+                page.paragraph(INVARIANTS);
             }
             page.table(table);
         }
         page.section("Errors over cost");
+        page.paragraph(&format!(
+            "All model runs spent; the paper counts those of the final mesh, and of its sparse rows the ranges are drawn. Errors below \
+             what {} points resolve are drawn at the lower edge.",
+            count(self.options().runs)
+        ));
         page.charts(&cost_charts(self));
+    }
+
+    /// Table 2 as a Markdown file.
+    pub fn to_markdown(&self) -> String {
+        let mut text =
+            format!("# Table 2 of Kieu, Bergeot and Berger (2017), computed anew\n\n{}\n", self.explanation());
+        for (number, table) in table_2(&self.rows).iter().enumerate() {
+            if number == 1 {
+                text.push_str(&format!("\n## {INVARIANTS_HEADING}\n\n{INVARIANTS}\n"));
+            }
+            text.push_str(&format!("\n{}", table.to_markdown()));
+        }
+        text
+    }
+
+    fn explanation(&self) -> String {
+        format!(
+            "Every build is compared with the model on the same {} points (seed {}) for each number r of uncertain parameters. Sparse \
+             builds are made from five designs; smallest and largest values are given. Runs are all model runs spent; the paper counts \
+             those of the final mesh. Errors are of the mean, of the variance and of the proportion of stability; for mean and \
+             variance the larger one of Re λ of both modes is given, and the paper does not say which it means. Each column headed \
+             \"paper\" has the paper's figures, as printed, for the column before it; its 0.18 % for gPC with r = 2 is probably a \
+             misprint, between 6.45 % on either side.",
+            count(self.options().runs),
+            self.options().seed
+        )
     }
 }
 

@@ -78,7 +78,7 @@ impl Sureness {
             (None, None) => "unknown: no point could be left out".to_owned(),
             (None, Some(error)) => {
                 format!(
-                    "unknown: no point could be left out; at least {} % of the proportion",
+                    "unknown: no point could be left out; modes left out alone may move it by {} %",
                     super::significant(error, 2)
                 )
             }

@@ -5,13 +5,16 @@ use super::compare::CompareReport;
 use super::eval::EvalReport;
 use super::inspect::InspectReport;
 use super::page::Page;
-use super::table::count;
+use super::table::{count, significant};
 use crate::plot::Color;
 use crate::spectrum::Block;
 use crate::surrogate::Surrogate;
 
 /// Inputs over which modes are drawn.
 const DRAWN_INPUTS: usize = 3;
+
+/// Relative errors of the proportion from here on are shown as a warning, in percent.
+const LARGE_ERROR_PERCENT: f64 = 1.0;
 
 /// Points of a scatter: more would only hide each other.
 const SCATTER: usize = 1500;
@@ -59,15 +62,19 @@ impl SurrogatePage<'_> {
         page.facts(&eval.sureness.facts());
         eval.warnings.iter().for_each(|warning| page.warning(warning));
         if let Some(Validation { compare, .. }) = &self.validation {
-            page.paragraph(&format!(
-                "Checked at {} points where the model was run as well: the proportion there is {:.3} % by the model and {:.3} % by \
-                 the surrogate, {} off, and {:.3} % of the points are misclassified.",
+            let checked = format!(
+                "The model was run at the first {} of these points, too: {:.3} % of them are stable by the model and {:.3} % by the \
+                 surrogate, a relative error of {}, and {} % are misclassified.",
                 count(compare.samples),
                 100.0 * compare.proportion_model,
                 100.0 * compare.proportion_surrogate,
-                compare.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("{error:.3} %")),
-                compare.misclassified_percent
-            ));
+                compare
+                    .relative_error_percent
+                    .map_or("infinity".to_owned(), |error| format!("{} %", significant(error, 2))),
+                significant(compare.misclassified_percent, 2)
+            );
+            let is_close = compare.relative_error_percent.is_some_and(|error| error < LARGE_ERROR_PERCENT);
+            if is_close { page.paragraph(&checked) } else { page.warning(&checked) }
         }
     }
 
@@ -79,10 +86,9 @@ impl SurrogatePage<'_> {
         let surrogate = ("surrogate", Color::Red, self.block.max_re.as_slice());
         match &self.validation {
             Some(Validation { max_re, .. }) => {
-                let compared = &self.block.max_re[..max_re.len()];
                 charts.push(density_chart(&title, &[("model", Color::Blue, max_re), surrogate]));
-                let shown = max_re.len().min(SCATTER);
-                charts.push(validation_chart(&max_re[..shown], &compared[..shown]));
+                let shown = max_re.len().min(self.block.max_re.len()).min(SCATTER);
+                charts.push(validation_chart(&max_re[..shown], &self.block.max_re[..shown]));
             }
             None => charts.push(density_chart(&title, &[surrogate])),
         }

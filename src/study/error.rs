@@ -90,8 +90,8 @@ pub enum StudyError {
     },
     /// A full expansion needs more runs than the study allows.
     #[error(
-        "fit.max_degree {degree} with {inputs} inputs takes {runs} model runs, more than design.maximum ({maximum}); lower the \
-         degree, raise the maximum, or choose a sparse method"
+        "fit.max_degree {degree} with {inputs} inputs takes {runs} model runs, more than design.maximum ({maximum}); raise the \
+         maximum, lower a degree above 1, or choose least squares or a sparse method"
     )]
     TooManyRuns {
         /// Degree p.

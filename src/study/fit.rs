@@ -204,7 +204,7 @@ impl Lines<'_> {
         };
         Ok(MultiElement {
             max_degree: self.max_degree(raw.max_degree, defaults::ELEMENT_DEGREE)?,
-            theta_1: self.number("fit.theta_1", raw.theta_1, defaults::THETA_1, "a number from 0", not_negative)?,
+            theta_1: self.number("fit.theta_1", raw.theta_1, defaults::THETA_1, "0 or more", not_negative)?,
             theta_2: self.share("fit.theta_2", raw.theta_2, defaults::THETA_2)?,
             gamma: self.share("fit.gamma", raw.gamma, defaults::GAMMA)?,
             elements,

@@ -59,6 +59,14 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
     Ok(Study { name, seed, model, inputs, spectrum, design, fit })
 }
 
+/// `"a", "b" or "c"`.
+fn alternatives(names: &[String]) -> String {
+    match names {
+        [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        _ => names.concat(),
+    }
+}
+
 /// Knows the text, so that errors can name lines.
 pub(super) struct Lines<'a> {
     text: &'a str,
@@ -116,7 +124,7 @@ impl Lines<'_> {
             StudyError::UnknownWord {
                 place: self.place(key, word),
                 found: word.get_ref().clone(),
-                expected: names.join(" or "),
+                expected: alternatives(&names),
             }
         })
     }

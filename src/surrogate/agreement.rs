@@ -4,13 +4,16 @@
 //! settings come out of a search can take another of several settings that are equally good; it agrees if it predicts the
 //! same within its own leave-one-out error.
 
-use super::Surrogate;
+use super::{Expansion, Surrogate};
 use thiserror::Error;
 
 /// Largest difference of coefficients between machines, relative to the largest coefficient of the expansion besides the
 /// mean. Matrix products choose their kernels by processor; a build amplifies such last-bit differences by the condition
 /// of its regression, below 10⁴ for N ≥ 2 card(A).
 pub const PORTABLE_TOLERANCE: f64 = 1e-9;
+
+/// Share of a mean of which [`PORTABLE_TOLERANCE`] is some hundred roundings.
+const MEAN_ROUNDING: f64 = 1e-5;
 
 /// The methods without a search for settings.
 const WITHOUT_SEARCH: [&str; 3] = ["stepwise", "gpc", "me-gpc"];
@@ -70,12 +73,13 @@ impl Surrogate {
         if !WITHOUT_SEARCH.contains(&self.training.method.as_str()) {
             return self.predicts_like(other);
         }
+        let scales: Vec<f64> = (0..self.component_count()).map(|component| self.coefficient_scale(component)).collect();
         for (number, (own, others)) in self.expansions.iter().zip(&other.expansions).enumerate() {
             let component = number % self.component_count();
             if own.indices != others.indices {
                 return Err(Disagreement::IndexSet { component });
             }
-            let largest = own.coefficients.iter().skip(1).fold(f64::MIN_POSITIVE, |largest, c| c.abs().max(largest));
+            let largest = scales[component];
             let pairs = own.coefficients.iter().zip(&others.coefficients);
             let difference = pairs.fold(0f64, |difference, (a, b)| difference.max((a - b).abs())) / largest;
             if difference > PORTABLE_TOLERANCE {
@@ -83,6 +87,14 @@ impl Surrogate {
             }
         }
         Ok(())
+    }
+
+    /// What differences of coefficients are relative to: the largest besides the mean in any element, but not less than what
+    /// rounding of the mean makes of it.
+    fn coefficient_scale(&self, component: usize) -> f64 {
+        let largest = |part: &Expansion| part.coefficients.iter().skip(1).fold(0f64, |largest, c| c.abs().max(largest));
+        let means = self.expansions_of(component).map(|part| MEAN_ROUNDING * part.mean().abs());
+        self.expansions_of(component).map(largest).chain(means).fold(f64::MIN_POSITIVE, f64::max)
     }
 
     fn predicts_like(&self, other: &Self) -> Result<(), Disagreement> {

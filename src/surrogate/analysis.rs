@@ -80,8 +80,8 @@ pub struct FitQuality {
 fn severity(stop: StopReason) -> usize {
     match stop {
         StopReason::Constant => 0,
-        StopReason::Accurate => 1,
+        StopReason::Accurate | StopReason::GivenDegree | StopReason::Settled => 1,
         StopReason::HighestDegree => 2,
-        StopReason::DesignExhausted => 3,
+        StopReason::DesignExhausted | StopReason::Limited => 3,
     }
 }

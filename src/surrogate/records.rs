@@ -57,6 +57,12 @@ pub enum StopReason {
     DesignExhausted,
     /// The values do not vary: the mean is exact.
     Constant,
+    /// The degree was given: nothing was searched.
+    GivenDegree,
+    /// No element asks to be divided any more.
+    Settled,
+    /// Elements that ask to be divided are left.
+    Limited,
 }
 
 impl StopReason {
@@ -67,6 +73,9 @@ impl StopReason {
             Self::HighestDegree => "highest degree",
             Self::DesignExhausted => "design exhausted",
             Self::Constant => "constant",
+            Self::GivenDegree => "given degree",
+            Self::Settled => "elements settled",
+            Self::Limited => "limit on elements",
         }
     }
 }
@@ -131,7 +140,8 @@ pub struct Decision {
     /// Quantiles of (max Re λ of the model) − (its leave-one-out prediction, all components together), in 1/s; empty if
     /// undetermined.
     pub max_re_residuals: Vec<Quantile>,
-    /// Estimated relative error of the stability proportion, as a fraction.
+    /// Estimated relative error of the stability proportion, as a fraction; of quadratures, which leave no point out, the part
+    /// alone that modes the surrogate does not carry have in it, by the share of the nodes that they decide.
     pub proportion_error: Option<f64>,
 }
 

@@ -71,22 +71,22 @@ fn keep_other_files(output: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses to replace a file that is no page of pcc by one.
-fn keep_other_pages(output: &Path) -> anyhow::Result<()> {
+/// What every page of pcc says near its start.
+const PAGE_MARK: &str = "<meta name=\"generator\" content=\"pcc ";
+
+/// Refuses to replace a file by one of another kind, which has `mark` near its start.
+fn keep_unmarked_files(output: &Path, mark: &str) -> anyhow::Result<()> {
     if !output.is_file() {
         return Ok(());
     }
     let mut start = Vec::new();
     let read = File::open(output).and_then(|file| file.take(1024).read_to_end(&mut start));
-    let is_ours = start.windows(PAGE_MARK.len()).any(|window| window == PAGE_MARK);
+    let is_ours = start.windows(mark.len()).any(|window| window == mark.as_bytes());
     if read.is_ok() && !start.is_empty() && !is_ours {
-        bail!("{}: exists and is no page made by pcc; name another output, or remove it first", output.display());
+        bail!("{}: exists and was not made by pcc; name another output, or remove it first", output.display());
     }
     Ok(())
 }
-
-/// What every page of pcc says near its start.
-const PAGE_MARK: &[u8] = b"<meta name=\"generator\" content=\"pcc ";
 
 fn read_study(path: &Path) -> anyhow::Result<Study> {
     let mut bytes = Vec::new();

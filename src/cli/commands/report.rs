@@ -3,7 +3,7 @@
 use super::super::arguments::Report;
 use super::super::{Context, Ending};
 use super::eval::sample;
-use super::{interruptible, keep_inputs, keep_other_pages, read_study, read_surrogate};
+use super::{PAGE_MARK, interruptible, keep_inputs, keep_unmarked_files, read_study, read_surrogate};
 use crate::artifact::{check_writable, save};
 use crate::eval::{Plan, evaluate_points};
 use crate::input::random_point;
@@ -18,8 +18,11 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-/// Points of the surrogate that are kept for pictures without a study.
-const POINTS: usize = 20_000;
+/// Points of the surrogate that are kept for pictures.
+const POINTS: u64 = 20_000;
+
+/// Model runs, as many as the paper's reference.
+const RUNS: u64 = 10_000;
 
 pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.surrogate)?;
@@ -27,7 +30,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
     let inputs: Vec<&Path> =
         [Some(options.surrogate.as_path()), options.study.as_deref()].into_iter().flatten().collect();
     keep_inputs(&options.output, &inputs)?;
-    keep_other_pages(&options.output)?;
+    keep_unmarked_files(&options.output, PAGE_MARK)?;
     check_writable(&options.output)?;
     let surrogate = &artifact.surrogate;
     let name = &surrogate.provenance.study_name;
@@ -42,7 +45,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
                 );
             }
             let what = path.display().to_string();
-            let found = ModelSample::new(study, options.runs, options.seed, &context.terminal)
+            let found = ModelSample::new(study, options.runs.unwrap_or(RUNS), options.seed, &context.terminal)
                 .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
                 .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
             Some(found)
@@ -53,8 +56,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
     let compare = model
         .as_ref()
         .map(|(comparison, _)| CompareReport::new(name, runs, comparison, options.seed, start.elapsed().as_secs_f64()));
-    let count = model.as_ref().map_or(POINTS, |(_, max_re)| max_re.len());
-    let (points, block) = at_random_points(surrogate, count, options.seed);
+    let (points, block) = at_random_points(surrogate, options.seed);
     let eval = sample(context, surrogate, options.samples, options.seed)?;
     let bytes = std::fs::metadata(&options.surrogate).map_or(0, |metadata| metadata.len());
     let html = SurrogatePage {
@@ -76,9 +78,9 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
     Ok(Ending::Done)
 }
 
-/// The points that `eval` and `reference` take, and the surrogate there.
-fn at_random_points(surrogate: &Surrogate, count: usize, seed: u64) -> (Vec<Vec<f64>>, Block) {
-    let points: Vec<Vec<f64>> = (0..count as u64)
+/// The first points that `eval` and `reference` take, and the surrogate there.
+fn at_random_points(surrogate: &Surrogate, seed: u64) -> (Vec<Vec<f64>>, Block) {
+    let points: Vec<Vec<f64>> = (0..POINTS)
         .map(|index| {
             let mut point = vec![0.0; surrogate.inputs.dimension()];
             random_point(&surrogate.inputs, seed, Purpose::Evaluation, index, &mut point);

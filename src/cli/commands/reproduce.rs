@@ -2,15 +2,26 @@
 
 use super::super::arguments::{Part, Reproduce};
 use super::super::{Context, Ending, complain};
-use super::{interruptible, keep_other_pages};
+use super::{PAGE_MARK, interruptible, keep_unmarked_files};
 use crate::artifact::{check_writable, save};
-use crate::report::{figure_sheets, table_2};
+use crate::report::{figure_sheets, short_table_2};
 use crate::reproduce::{Options, Reproduction, Row};
 use anyhow::Context as _;
 use serde::Serialize;
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
+
+/// The files that can be written, and what each has near its start.
+const TARGETS: [(&str, &str); 7] = [
+    ("report.html", PAGE_MARK),
+    ("table2.csv", "r,method,order,direct_computations"),
+    ("table2.partial.csv", "r,method,order,direct_computations"),
+    ("table2.md", "# Table 2 of Kieu"),
+    ("figure3.svg", "sheet-title"),
+    ("figure4.svg", "sheet-title"),
+    ("errors.svg", "sheet-title"),
+];
 
 pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> anyhow::Result<Ending> {
     let wants = |part| options.only.is_none_or(|only| only == part);
@@ -24,26 +35,41 @@ pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> any
     let folder = &options.output;
     std::fs::create_dir_all(folder).with_context(|| format!("folder {} cannot be created", folder.display()))?;
     let page = folder.join("report.html");
-    keep_other_pages(&page)?;
+    for (name, mark) in TARGETS {
+        keep_unmarked_files(&folder.join(name), mark)?;
+    }
     check_writable(&page)?;
     let start = Instant::now();
     let mut work = Reproduction::new(wanted);
+    // A table that is there already is replaced by a complete one only.
+    let complete = folder.join("table2.csv");
+    let partial = if complete.exists() { folder.join("table2.partial.csv") } else { complete.clone() };
     loop {
         match work.step(&context.terminal) {
-            Ok(true) => {
-                save_table(folder, &work)?;
-            }
+            Ok(true) => save_rows(&partial, &work)?,
             Ok(false) => break,
             Err(error) => {
-                let kept = save_table(folder, &work)?;
-                if let Some(file) = kept.first() {
-                    complain(&format!("{} rows that were done are in {}", work.rows.len(), file.display()));
+                match save_rows(&partial, &work) {
+                    Ok(()) if work.rows.is_empty() => {}
+                    Ok(()) => {
+                        complain(&format!("{} rows that were done are in {}", work.rows.len(), partial.display()))
+                    }
+                    Err(lost) => complain(&format!("the rows that were done could not be kept: {lost:#}")),
                 }
                 return Err(interruptible(error.clone(), error.is_interruption(), "reproduce"));
             }
         }
     }
-    let mut files = save_table(folder, &work)?;
+    let mut files = Vec::new();
+    if wanted.table_2 {
+        save_rows(&complete, &work)?;
+        if partial != complete {
+            let _ = std::fs::remove_file(&partial); // what it held is in the complete table
+        }
+        let markdown = folder.join("table2.md");
+        save(&markdown, work.to_markdown().as_bytes())?;
+        files.extend([complete, markdown]);
+    }
     for (name, svg) in figure_sheets(&work) {
         files.push(folder.join(name));
         save(&folder.join(name), svg.as_bytes())?;
@@ -55,18 +81,14 @@ pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> any
     Ok(Ending::Done)
 }
 
-/// Writes the rows that are done as CSV and Markdown; nothing without rows.
-fn save_table(folder: &Path, work: &Reproduction) -> anyhow::Result<Vec<PathBuf>> {
+/// Writes the rows that are done; nothing without rows.
+fn save_rows(path: &Path, work: &Reproduction) -> anyhow::Result<()> {
     if work.rows.is_empty() {
-        return Ok(Vec::new());
+        return Ok(());
     }
     let mut writer = csv::Writer::from_writer(Vec::new());
     work.rows.iter().try_for_each(|row| writer.serialize(row))?;
-    let (rows, markdown) = (folder.join("table2.csv"), folder.join("table2.md"));
-    save(&rows, &writer.into_inner()?)?;
-    let tables: Vec<String> = table_2(&work.rows).iter().map(|table| table.to_markdown()).collect();
-    save(&markdown, tables.join("\n").as_bytes())?;
-    Ok(vec![rows, markdown])
+    Ok(save(path, &writer.into_inner()?)?)
 }
 
 /// What was found and where it is.
@@ -79,9 +101,12 @@ struct Reproduced {
 
 impl fmt::Display for Reproduced {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (number, table) in table_2(&self.rows).iter().enumerate() {
-            let heading = ["table 2: the paper's methods", "the same methods on invariants"];
+        for (number, table) in short_table_2(&self.rows).iter().enumerate() {
+            let heading = ["table 2: the paper's methods, with the paper's figures", "the same methods on invariants"];
             writeln!(f, "{}\n\n{table}", heading[number.min(1)])?;
+        }
+        if !self.rows.is_empty() {
+            writeln!(f, "errors in percent; those of means and variances are in table2.md and table2.csv")?;
         }
         writeln!(f, "{:.1} s; written:", self.elapsed_seconds)?;
         self.files.iter().try_for_each(|file| writeln!(f, "  {file}"))
