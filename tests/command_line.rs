@@ -113,7 +113,9 @@ fn full_expansions_and_elements_are_built_shown_and_inspected() {
         text.push_str(&format!("=== {name}\n[design]{tables}\n{built}\n{answer}"));
     }
     text.push_str(&format!("=== inspect\n{}", output(folder.path(), &["inspect", "full.pcc", "--check"])));
-    assert_output!("full_expansions", text);
+    // A hash of coefficients, whose last bits depend on the processor.
+    let is_portable = |line: &&str| !line.starts_with("  content id");
+    assert_output!("full_expansions", text.lines().filter(is_portable).collect::<Vec<_>>().join("\n"));
 }
 
 #[test]
