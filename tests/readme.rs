@@ -90,6 +90,16 @@ fn the_explained_full_expansions_show_the_defaults() {
     }
 }
 
+/// Both come from one run of `pcc reproduce`.
+#[test]
+fn the_reproduced_table_is_that_of_the_documentation() {
+    let (readme, table) = (text("README.md"), text("docs/table2.md"));
+    let head = table.lines().find(|line| line.starts_with("| r | method |")).unwrap();
+    let rows: Vec<&str> = readme.lines().skip_while(|line| *line != head).take_while(|line| !line.is_empty()).collect();
+    assert_eq!(rows.len(), 30, "28 rows below the head");
+    assert!(table.contains(&rows.join("\n")));
+}
+
 fn shows_the_defaults(explained: &str, target: &str) {
     let study = Study::from_toml(explained).unwrap();
     let bare = Study::from_toml(&format!(

@@ -157,9 +157,10 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
-/// The same for sentences: numbers stay on the line of their percent sign, and columns of a terminal become a list.
+/// The same for sentences written for a terminal: numbers stay on the line of their percent sign, columns become a list, commands
+/// need no quotes.
 fn prose(text: &str) -> String {
-    escape(text).replace(" %", "\u{a0}%").replace("   ", ", ")
+    escape(text).replace(" %", "\u{a0}%").replace("   ", ", ").replace('`', "")
 }
 
 /// CSV as a link inside the page: bytes that could end the attribute or the URL are percent-encoded (RFC 2397 and 3986).
