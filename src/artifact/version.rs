@@ -23,9 +23,9 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     let is_full = |expansion: &Expansion| {
         matches!(expansion.stop, StopReason::GivenDegree | StopReason::Settled | StopReason::Limited)
     };
-    let has_elements = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
+    let needs_2 = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
-    if has_elements { 2 } else { u16::from(has_clusters) }
+    if needs_2 { 2 } else { u16::from(has_clusters) }
 }
 
 /// What this code can do with a file.

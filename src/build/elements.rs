@@ -11,7 +11,7 @@ use super::decision;
 use super::record;
 use crate::design::{Run, RunError, Runner, TensorGauss};
 use crate::fit::gpc::{Projection, project, total_degree};
-use crate::fit::multi_element::{Division, division};
+use crate::fit::multi_element::{Division, EQUAL, division};
 use crate::fit::{Fitted, Stop};
 use crate::index_set::{IndexSet, MultiIndex};
 use crate::input::Mesh;
@@ -180,8 +180,8 @@ impl<'a> Elements<'a> {
         let room = settings.elements - self.runs.len();
         let urgency = |element: usize| self.divisions[element].urgency;
         let candidates = (0..self.divisions.len()).filter_map(|element| Some((element, self.asks(element, settings)?)));
-        let (element, mut inputs) =
-            candidates.reduce(|most, next| if urgency(next.0) > urgency(most.0) { next } else { most })?;
+        let (element, mut inputs) = candidates
+            .reduce(|most, next| if urgency(next.0) > (1.0 + EQUAL) * urgency(most.0) { next } else { most })?;
         let fits = |along: usize| {
             let parts = 1u64.checked_shl(along as u32).unwrap_or(u64::MAX);
             parts - 1 <= room as u64 && parts <= runs_left

@@ -181,12 +181,29 @@ mod tests {
             sum(&|i| (sum(&|k| value(i, k)) - mean).powi(2)) / variance,
             sum(&|k| (sum(&|i| value(i, k)) - mean).powi(2)) / variance,
         ];
-        let found = surrogate.sobol_indices(0).unwrap();
+        let found = surrogate.sobol_indices()[0].clone().unwrap();
         for j in 0..2 {
             assert!((found.first[j] - alone[j]).abs() < 1e-12, "{found:?}");
             assert!((found.total[j] - (1.0 - alone[1 - j])).abs() < 1e-12, "{found:?}");
         }
         assert!(found.first[0] + found.first[1] < 0.99, "there is an interaction");
+
+        // Far from zero, where squares of means hide the variance.
+        let mut far = surrogate;
+        for part in far.expansions.iter_mut().step_by(2) {
+            let mut terms: Vec<(Vec<u16>, f64)> =
+                part.indices.iter().zip(&part.coefficients).map(|(alpha, c)| (alpha.to_vec(), *c)).collect();
+            match terms.first_mut() {
+                Some((alpha, c)) if alpha[..] == [0, 0] => *c += 1e9,
+                _ => terms.insert(0, (vec![0, 0], 1e9)),
+            }
+            let terms: Vec<(&[u16], f64)> = terms.iter().map(|(alpha, c)| (alpha.as_slice(), *c)).collect();
+            *part = expansion(&terms);
+        }
+        let far_away = far.sobol_indices()[0].clone().unwrap();
+        for (near, far) in found.first.iter().chain(&found.total).zip(far_away.first.iter().chain(&far_away.total)) {
+            assert!((near - far).abs() < 1e-6, "{found:?} and {far_away:?}");
+        }
     }
 
     #[test]

@@ -169,8 +169,9 @@ pub fn least_squares(
     let mut best = (fit(full_weight)?, full_weight);
     for weight in others {
         let found = fit(weight)?;
-        // Fewer values than terms leave terms out: such a fit is no full expansion.
-        if found.stop == Stop::GivenDegree && s2(&found) > s2(&best.0) {
+        // A fit that is not determined, or leaves terms out because there are fewer values, is no full expansion.
+        let is_full = |fitted: &Fitted| fitted.stop == Stop::GivenDegree;
+        if is_full(&found) && (!is_full(&best.0) || s2(&found) > s2(&best.0)) {
             best = (found, weight);
         }
     }

@@ -23,6 +23,13 @@ use super::gpc::Projection;
 use crate::index_set::IndexSet;
 use crate::study::MultiElement;
 
+/// Squares of coefficients up to this share of those of the highest order are rounding of the quadrature.
+const ROUNDING: f64 = 1e-24;
+
+/// Shares and urgencies closer than this are equal but for rounding: the input or element that comes first is taken, on every
+/// processor.
+pub const EQUAL: f64 = 1e-9;
+
 /// Why and how an element would be divided.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Division {
@@ -58,14 +65,20 @@ fn sensitive_inputs(projection: &Projection, indices: &IndexSet, settings: &Mult
     let highest = |alpha: &[u16]| alpha.iter().sum::<u16>() == degree;
     let alone = |j: usize| squares(projection, indices, |alpha| alpha[j] == degree && highest(alpha));
     let together = |j: usize| squares(projection, indices, |alpha| alpha[j] > 0 && highest(alpha));
+    let all = squares(projection, indices, highest);
     let mut shares: Vec<(usize, f64)> = (0..inputs).map(|j| (j, alone(j))).collect();
-    if shares.iter().all(|(_, share)| *share == 0.0) {
+    if shares.iter().all(|(_, share)| *share <= ROUNDING * all) {
         shares = (0..inputs).map(|j| (j, together(j))).collect();
     }
-    // Equal shares in the order of the inputs: the sort is stable.
-    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let largest = shares[0].1;
-    shares.into_iter().filter(|(_, share)| *share >= settings.theta_2 * largest).map(|(j, _)| j).collect()
+    let largest = shares.iter().map(|(_, share)| *share).fold(0.0, f64::max);
+    shares.retain(|(_, share)| *share >= settings.theta_2 * (1.0 - EQUAL) * largest);
+    let mut inputs = Vec::with_capacity(shares.len());
+    while !shares.is_empty() {
+        let most = shares.iter().map(|(_, share)| *share).fold(0.0, f64::max);
+        let at = shares.iter().position(|(_, share)| *share >= (1.0 - EQUAL) * most).unwrap_or(0);
+        inputs.push(shares.remove(at).0);
+    }
+    inputs
 }
 
 fn squares(projection: &Projection, indices: &IndexSet, holds: impl Fn(&[u16]) -> bool) -> f64 {

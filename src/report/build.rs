@@ -12,7 +12,7 @@ const POOR: f64 = 0.9;
 const LARGE_ERROR: f64 = 0.05;
 
 /// Design of quadratures.
-const QUADRATURE: &str = "tensor-gauss";
+pub(super) const QUADRATURE: &str = "tensor-gauss";
 
 /// More levels than this are abbreviated.
 const MANY_LEVELS: usize = 6;
@@ -106,11 +106,16 @@ impl FitReport {
     fn warnings_by_method(surrogate: &Surrogate, fits: &[Self]) -> Vec<String> {
         let has = |stop: StopReason| fits.iter().any(|fit| fit.stop == stop.describe());
         if surrogate.training.design == QUADRATURE {
-            let mut warnings = vec![
+            let is_poor = |fit: &&Self| fit.r2.is_some_and(|r2| r2 < POOR);
+            let misfit = |fit: &Self| {
+                format!("{} is poorly fitted at the nodes already (R² {:.2})", fit.name, fit.r2.unwrap_or(0.0))
+            };
+            let mut warnings: Vec<String> = fits.iter().filter(is_poor).map(misfit).collect();
+            warnings.push(
                 "quadrature leaves no point out, so nothing is known of the error between its nodes; check with pcc compare or \
                  certify"
                     .to_owned(),
-            ];
+            );
             if has(StopReason::Limited) {
                 warnings.push(
                     "elements that fit.theta_1 asks to divide are left; raise fit.elements or design.maximum for more"
@@ -124,7 +129,7 @@ impl FitReport {
             "gpc" if has(StopReason::DesignExhausted) => {
                 warnings.push("the points hardly determine all terms; raise fit.oversampling or lower the degree".to_owned());
             }
-            "gpc" if surrogate.decision.proportion_error.is_none() => warnings.push(
+            "gpc" => warnings.push(
                 "one design does not tell how far the proportion is off, and S² says little of it; check with pcc compare or certify"
                     .to_owned(),
             ),

@@ -2,6 +2,7 @@
 
 use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
+use super::sureness::{error_text, is_of_modes_left_out};
 use super::table::{Align, Table, count, significant};
 use crate::artifact::{Artifact, Format};
 use crate::eval::{Plan, self_test_difference};
@@ -66,6 +67,9 @@ pub struct InspectReport {
     pub plan: PlanReport,
     /// Estimated relative error of the stability proportion, in percent; null if unknown.
     pub estimated_error_percent: Option<f64>,
+    /// Whether that is the part of modes left out alone, because there was one design level.
+    #[serde(skip)]
+    pub of_modes_left_out: bool,
     /// Largest relative difference between the self-test and this evaluator.
     pub self_test_difference: f64,
     /// Largest difference allowed.
@@ -133,6 +137,7 @@ impl InspectReport {
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
             estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
+            of_modes_left_out: is_of_modes_left_out(surrogate),
             self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
             certificates: CertificateReport::of(surrogate),
@@ -141,9 +146,12 @@ impl InspectReport {
 
     fn estimated_error(&self) -> String {
         match self.estimated_error_percent {
-            Some(error) => format!("estimated error {} %", significant(error, 2)),
+            Some(error) => error_text(error, self.of_modes_left_out),
             None if self.components.iter().all(|fit| fit.s2.is_none()) => {
                 "error not estimated, because no point was left out".to_owned()
+            }
+            None if self.method == "gpc" => {
+                "error not estimated, which takes two design levels and gPC has one".to_owned()
             }
             None => "error not estimated, which takes two design levels".to_owned(),
         }

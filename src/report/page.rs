@@ -48,15 +48,16 @@ th { font-weight: 600; }
 /// A page that grows section by section.
 #[derive(Debug)]
 pub(super) struct Page {
+    command: &'static str,
     title: String,
     body: String,
     figures: usize,
 }
 
 impl Page {
-    /// A page with this title, as text.
-    pub fn new(title: &str) -> Self {
-        Self { title: escape(title), body: format!("<h1>{}</h1>\n", escape(title)), figures: 0 }
+    /// A page with this title, as text, made by this command.
+    pub fn new(title: &str, command: &'static str) -> Self {
+        Self { command, title: escape(title), body: format!("<h1>{}</h1>\n", escape(title)), figures: 0 }
     }
 
     /// A heading, as text.
@@ -131,10 +132,11 @@ impl Page {
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
              content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" \
-             content=\"{POLICY}\">\n<meta name=\"generator\" content=\"pcc {version}\">\n<title>{title}</title>\n\
+             content=\"{POLICY}\">\n<meta name=\"generator\" content=\"pcc {command} {version}\">\n<title>{title}</title>\n\
              <style>{PAGE_STYLE}{STYLE}</style>\n</head>\n<body>\n<main>\n{body}</main>\n<footer><p>Made by pcc {version}. \
              This file stands alone: it loads nothing.</p></footer>\n</body>\n</html>\n",
             version = env!("CARGO_PKG_VERSION"),
+            command = self.command,
             title = self.title,
             body = self.body,
         )
@@ -186,7 +188,7 @@ mod tests {
 
     #[test]
     fn names_are_text_wherever_they_stand() {
-        let mut page = Page::new(HOSTILE);
+        let mut page = Page::new(HOSTILE, "report");
         page.section(HOSTILE);
         page.paragraph(HOSTILE);
         page.lead(HOSTILE);

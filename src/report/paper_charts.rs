@@ -74,14 +74,18 @@ fn is_of(row: &Row, method: &str, target: &str) -> bool {
 }
 
 /// The methods that are drawn, in the order of the table: a colour per method, a symbol per target.
-const METHODS: [Method; 7] = [
+const METHODS: [Method; 9] = [
     ("gPC", Color::Blue, Symbol::Circle, |row| is_of(row, "gpc", "eigenvalues")),
     ("ME-gPC", Color::Purple, Symbol::Circle, |row| is_of(row, "me-gpc", "eigenvalues")),
     ("sparse PC", Color::Red, Symbol::Circle, |row| is_of(row, "sparse", "eigenvalues")),
-    ("gPC of invariants", Color::Blue, Symbol::Diamond, |row| is_of(row, "gpc", "invariants")),
+    ("gPC of invariants", Color::Blue, Symbol::Diamond, |row| is_of(row, "gpc", "invariants") && !row.is_least_squares),
+    ("least squares of invariants", Color::Teal, Symbol::Diamond, |row| {
+        is_of(row, "gpc", "invariants") && row.is_least_squares
+    }),
     ("ME-gPC of invariants", Color::Purple, Symbol::Diamond, |row| is_of(row, "me-gpc", "invariants")),
     ("sparse PC of invariants", Color::Red, Symbol::Diamond, |row| is_of(row, "sparse", "invariants")),
-    ("the same with derivatives", Color::Orange, Symbol::Triangle, |row| row.derivatives),
+    ("least squares with derivatives", Color::Teal, Symbol::Triangle, |row| row.derivatives && row.method == "gpc"),
+    ("sparse PC with derivatives", Color::Red, Symbol::Triangle, |row| row.derivatives && row.method == "sparse"),
 ];
 
 /// Error of the proportion over model runs for all methods with so many inputs, compared on `runs` points; `None` without rows.

@@ -240,7 +240,7 @@ pub fn figure_sheets(work: &Reproduction) -> Vec<(&'static str, String)> {
 impl Reproduction {
     /// What was found as an HTML file.
     pub fn to_html(&self) -> String {
-        let mut page = Page::new("Sparse polynomial chaos for the stability of a clutch, reproduced");
+        let mut page = Page::new("Sparse polynomial chaos for the stability of a clutch, reproduced", "reproduce");
         page.paragraph(
             "Kieu, Bergeot and Berger (23ème Congrès Français de Mécanique, Lille 2017) compare full, multi-element and sparse \
              polynomial chaos expansions of the eigenvalues of a clutch with friction. Here are their table 2 and figures 3 and 4, \

@@ -19,6 +19,9 @@ pub struct Sureness {
     pub surrogate_band: Option<Interval>,
     /// Estimated relative error of the proportion; null if unknown.
     pub estimated_error_percent: Option<f64>,
+    /// Whether that is the part of modes left out alone, because there was one design level.
+    #[serde(skip)]
+    pub of_modes_left_out: bool,
     /// The certificate with the most model runs, the first of equals; null if there is none.
     pub verified_bound: Option<VerifiedBound>,
 }
@@ -49,8 +52,24 @@ impl Sureness {
             samples: stable.samples,
             surrogate_band: (!decision.max_re_residuals.is_empty()).then_some(band),
             estimated_error_percent: decision.proportion_error.map(|error| 100.0 * error),
+            of_modes_left_out: is_of_modes_left_out(surrogate),
             verified_bound: verified_bound(surrogate),
         }
+    }
+}
+
+/// Whether the estimated error of a surrogate is the part of modes left out alone: the rest takes two design levels, and points left
+/// out.
+pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
+    surrogate.training.levels.len() == 1 || surrogate.training.design == super::build::QUADRATURE
+}
+
+/// What an estimated error of so many percent says.
+pub(super) fn error_text(percent: f64, of_modes_left_out: bool) -> String {
+    let percent = super::significant(percent, 2);
+    match of_modes_left_out {
+        true => format!("modes left out alone may move it by {percent} %"),
+        false => format!("estimated error {percent} % of the proportion"),
     }
 }
 
@@ -77,15 +96,11 @@ impl Sureness {
         let band = match (surrogate_band, self.estimated_error_percent) {
             (None, None) => "unknown: no point could be left out".to_owned(),
             (None, Some(error)) => {
-                format!(
-                    "unknown: no point could be left out; modes left out alone may move it by {} %",
-                    super::significant(error, 2)
-                )
+                format!("unknown: no point could be left out; {}", error_text(error, self.of_modes_left_out))
             }
             (Some(band), error) => {
-                let error = error.map_or(String::new(), |error| {
-                    format!("; estimated error {} % of the proportion", super::significant(error, 2))
-                });
+                let error =
+                    error.map_or(String::new(), |error| format!("; {}", error_text(error, self.of_modes_left_out)));
                 format!("{}   {} of points left out{error}", range(band), level(band))
             }
         };

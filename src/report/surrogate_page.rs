@@ -13,7 +13,7 @@ use crate::surrogate::Surrogate;
 /// Inputs over which modes are drawn.
 const DRAWN_INPUTS: usize = 3;
 
-/// Relative errors of the proportion from here on are shown as a warning, in percent.
+/// Relative errors of the proportion and misclassified shares from here on are shown as a warning, in percent.
 const LARGE_ERROR_PERCENT: f64 = 1.0;
 
 /// Points of a scatter: more would only hide each other.
@@ -48,7 +48,7 @@ pub struct Validation<'a> {
 impl SurrogatePage<'_> {
     /// The page as an HTML file.
     pub fn to_html(&self) -> String {
-        let mut page = Page::new(&format!("Stability of {}", self.eval.study));
+        let mut page = Page::new(&format!("Stability of {}", self.eval.study), "report");
         self.answer(&mut page);
         self.pictures(&mut page);
         self.modes(&mut page);
@@ -63,7 +63,7 @@ impl SurrogatePage<'_> {
         eval.warnings.iter().for_each(|warning| page.warning(warning));
         if let Some(Validation { compare, .. }) = &self.validation {
             let checked = format!(
-                "The model was run at the first {} of these points, too: {:.3} % of them are stable by the model and {:.3} % by the \
+                "The model was run at {} such points, too: {:.3} % of them are stable by the model and {:.3} % by the \
                  surrogate, a relative error of {}, and {} % are misclassified.",
                 count(compare.samples),
                 100.0 * compare.proportion_model,
@@ -73,7 +73,8 @@ impl SurrogatePage<'_> {
                     .map_or("infinity".to_owned(), |error| format!("{} %", significant(error, 2))),
                 significant(compare.misclassified_percent, 2)
             );
-            let is_close = compare.relative_error_percent.is_some_and(|error| error < LARGE_ERROR_PERCENT);
+            let is_close = compare.relative_error_percent.is_some_and(|error| error < LARGE_ERROR_PERCENT)
+                && compare.misclassified_percent < LARGE_ERROR_PERCENT;
             if is_close { page.paragraph(&checked) } else { page.warning(&checked) }
         }
     }

@@ -27,6 +27,9 @@ pub enum Disagreement {
     /// Model, constants, inputs, spectrum, study or components are not the same.
     #[error("they come from different studies")]
     Study,
+    /// The box is divided otherwise.
+    #[error("they have other elements")]
+    Elements,
     /// A component has other terms.
     #[error("component {component} has other multi-indices")]
     IndexSet {
@@ -66,11 +69,16 @@ impl Surrogate {
     /// The first [`Disagreement`].
     pub fn agrees_with(&self, other: &Self) -> Result<(), Disagreement> {
         let same_study = self.provenance.study_hash == other.provenance.study_hash
-            && (&self.inputs, &self.outputs, &self.mesh) == (&other.inputs, &other.outputs, &other.mesh);
-        if !same_study || self.expansions.len() != other.expansions.len() {
+            && (&self.inputs, &self.outputs) == (&other.inputs, &other.outputs);
+        if !same_study {
             return Err(Disagreement::Study);
         }
-        if !WITHOUT_SEARCH.contains(&self.training.method.as_str()) {
+        if self.mesh != other.mesh || self.expansions.len() != other.expansions.len() {
+            return Err(Disagreement::Elements);
+        }
+        // The weight of derivatives is searched for by every method that uses them.
+        let has_weights = self.training.settings.iter().any(|setting| setting.key == "derivative_weights");
+        if has_weights || !WITHOUT_SEARCH.contains(&self.training.method.as_str()) {
             return self.predicts_like(other);
         }
         let scales: Vec<f64> = (0..self.component_count()).map(|component| self.coefficient_scale(component)).collect();

@@ -1,20 +1,25 @@
-//! Sobol' indices of a component from its coefficients (Sobol' 1993; Sudret 2008, <https://doi.org/10.1016/j.ress.2007.04.002>).
+//! Sobol' indices of components from their coefficients (Sobol' 1993; Sudret 2008, <https://doi.org/10.1016/j.ress.2007.04.002>).
 //!
 //! First order S_j = Var E\[f | ξ_j\]/V and total T_j = 1 − Var E\[f | ξ_~j\]/V, where ~j is all inputs but j. For one expansion
 //! in orthonormal polynomials both are sums of squares. On elements they are not: E\[f | ξ_u\] adds up the elements that hold ξ_u,
 //!
 //! E\[f | ξ_u\] = Σ_e w_e^~u Σ_{α: α_~u = 0} c_α^e ψ_α(ζ_u^e),
 //!
-//! with w_e^~u the probability of the element's sides outside u. Its mean square is a sum over pairs of elements whose sides in u
-//! overlap, of integrals of products of polynomials over the overlaps, one input at a time: exact by a Gauss rule.
+//! with w_e^~u the probability of the element's sides outside u. With the mean taken off every c_0^e first, its variance is a sum
+//! over pairs of elements whose sides in u overlap, of integrals of products of polynomials over the overlaps, one input at a time:
+//! exact by a Gauss rule. For u = {j} all elements with the same side are added up before.
 
 use super::{Expansion, Surrogate};
 use crate::input::Element;
 use crate::numerics::quadrature::gauss;
 use crate::polynomial::Recurrence;
+use std::collections::BTreeMap;
 
-/// More elements have too many pairs to look at.
-const MOST_ELEMENTS: usize = 1000;
+/// More elements, which no study asks for, have too many pairs to look at.
+const MOST_ELEMENTS: usize = 10_000;
+
+/// Overlaps of different sides of one input that are held in memory at most; a mesh of halves has few for each side.
+const MOST_OVERLAPS: usize = 2_000_000;
 
 /// Sobol' indices of one component: shares of its variance.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,124 +48,210 @@ impl Expansion {
 }
 
 impl Surrogate {
-    /// Sobol' indices of a component; `None` if it does not vary, or if there are more than a thousand elements.
-    pub fn sobol_indices(&self, component: usize) -> Option<SobolIndices> {
-        let elements = self.mesh.elements();
-        if elements.len() == 1 {
-            return self.expansion(0, component).sobol_indices();
+    /// Sobol' indices of every component by id; `None` for those that do not vary. All `None` for meshes that no study gives, of
+    /// more than ten thousand elements or millions of overlaps.
+    pub fn sobol_indices(&self) -> Vec<Option<SobolIndices>> {
+        let components = 0..self.component_count();
+        if self.mesh.elements().len() == 1 {
+            return components.map(|id| self.expansion(0, id).sobol_indices()).collect();
         }
-        let unscaled = |(mean, variance): (f64, f64)| {
-            let parts = self.components();
-            let found = parts.iter().find(|part| part.id == component)?;
-            Some(((mean - found.center) / found.scale, variance / (found.scale * found.scale)))
-        };
-        let (mean, variance) = unscaled(*self.moments().get(component)?)?;
-        if variance <= 0.0 || elements.len() > MOST_ELEMENTS {
+        match Overlaps::new(self) {
+            Some(overlaps) => components.map(|id| on_elements(self, id, &overlaps)).collect(),
+            None => vec![None; self.component_count()],
+        }
+    }
+}
+
+/// The indices of one component.
+fn on_elements(surrogate: &Surrogate, component: usize, overlaps: &Overlaps) -> Option<SobolIndices> {
+    let elements = surrogate.mesh.elements();
+    let parts: Vec<&Expansion> = surrogate.expansions_of(component).collect();
+    let weighted = || elements.iter().zip(&parts);
+    let mean: f64 = weighted().map(|(element, part)| element.weight * part.mean()).sum();
+    let square = |part: &Expansion| part.variance() + (part.mean() - mean).powi(2);
+    let variance: f64 = weighted().map(|(element, part)| element.weight * square(part)).sum();
+    let inputs = 0..surrogate.inputs.dimension();
+    let share = |conditional: f64| (conditional / variance).clamp(0.0, 1.0);
+    (variance > 0.0).then(|| SobolIndices {
+        first: inputs.clone().map(|j| share(overlaps.variance_alone(j, elements, &parts, mean))).collect(),
+        total: inputs.map(|j| 1.0 - share(overlaps.variance_without(j, elements, &parts, mean))).collect(),
+    })
+}
+
+/// ½∫ φ_a(ζ) φ_b(ζ′) dξ over the overlap of two sides, with b running fastest.
+type Integrals = Vec<f64>;
+
+/// The different sides of the elements along one input, and where they overlap.
+struct Sides {
+    /// The side of each element.
+    of_element: Vec<usize>,
+    /// For each side, those that overlap it, ascending, with the integrals.
+    overlapping: Vec<Vec<(usize, Integrals)>>,
+}
+
+impl Sides {
+    fn integrals(&self, a: usize, b: usize) -> Option<&Integrals> {
+        let found = &self.overlapping[a];
+        found.binary_search_by_key(&b, |(other, _)| *other).ok().map(|at| &found[at].1)
+    }
+}
+
+/// Everything about a mesh that does not depend on the component.
+struct Overlaps {
+    sides: Vec<Sides>,
+    /// For each input j, the pairs of elements whose sides overlap in all others; each pair once.
+    pairs: Vec<Vec<(usize, usize)>>,
+    /// Highest degree plus one.
+    size: usize,
+    /// The index of the mean.
+    constant: Vec<u16>,
+}
+
+impl Overlaps {
+    fn new(surrogate: &Surrogate) -> Option<Self> {
+        let elements = surrogate.mesh.elements();
+        if elements.len() > MOST_ELEMENTS {
             return None;
         }
-        let conditional = |known: &dyn Fn(usize) -> bool| {
-            let square = mean_square(self, component, known);
-            ((square - mean * mean) / variance).clamp(0.0, 1.0)
-        };
-        let inputs = 0..self.inputs.dimension();
-        Some(SobolIndices {
-            first: inputs.clone().map(|j| conditional(&|k| k == j)).collect(),
-            total: inputs.map(|j| 1.0 - conditional(&|k| k != j)).collect(),
-        })
+        let degrees = surrogate.expansions.iter().flat_map(|part| part.indices.iter().flat_map(|alpha| alpha.to_vec()));
+        let size = usize::from(degrees.max().unwrap_or(0)) + 1;
+        let inputs = surrogate.inputs.inputs().iter().enumerate();
+        let sides: Option<Vec<Sides>> =
+            inputs.map(|(k, input)| Sides::new(elements, k, &input.marginal.family().recurrence(size), size)).collect();
+        let sides = sides?;
+        let pairs = (0..sides.len()).map(|j| pairs_without(&sides, j, elements)).collect();
+        Some(Self { constant: vec![0; sides.len()], sides, pairs, size })
     }
-}
 
-/// E\[E\[f | ξ_u\]²\] for the inputs u that are `known`.
-fn mean_square(surrogate: &Surrogate, component: usize, known: &dyn Fn(usize) -> bool) -> f64 {
-    let known: Vec<usize> = (0..surrogate.inputs.dimension()).filter(|&k| known(k)).collect();
-    let degree =
-        surrogate.expansions_of(component).flat_map(|part| part.indices.iter().flat_map(|alpha| alpha.to_vec()));
-    let size = usize::from(degree.max().unwrap_or(0)) + 1;
-    let rules: Vec<Rule> = known.iter().map(|&k| Rule::new(surrogate, k, size)).collect();
-    let parts: Vec<Part<'_>> = surrogate
-        .mesh
-        .elements()
-        .iter()
-        .zip(surrogate.expansions_of(component))
-        .map(|(element, expansion)| Part::new(element, expansion, &known))
-        .collect();
-    let mut sum = 0.0;
-    for (at, one) in parts.iter().enumerate() {
-        sum += one.product(one, &known, &rules);
-        for other in &parts[at + 1..] {
-            sum += 2.0 * one.product(other, &known, &rules);
+    /// Var E\[f | ξ_j\].
+    fn variance_alone(&self, j: usize, elements: &[Element], parts: &[&Expansion], mean: f64) -> f64 {
+        let Sides { of_element, overlapping } = &self.sides[j];
+        let mut sums = vec![vec![0.0; self.size]; overlapping.len()];
+        for ((element, part), &side) in elements.iter().zip(parts).zip(of_element) {
+            let weight = element.weight / element.half_width(j);
+            for (alpha, c) in centred(part, mean, &self.constant) {
+                if alpha.iter().enumerate().all(|(k, &degree)| k == j || degree == 0) {
+                    sums[side][usize::from(alpha[j])] += weight * c;
+                }
+            }
         }
+        let mut variance = 0.0;
+        for (a, others) in overlapping.iter().enumerate() {
+            for (b, integrals) in others {
+                for (row, one) in integrals.chunks_exact(self.size).zip(&sums[a]) {
+                    variance += row.iter().zip(&sums[*b]).map(|(integral, other)| one * other * integral).sum::<f64>();
+                }
+            }
+        }
+        variance
     }
-    sum
+
+    /// Var E\[f | ξ_~j\].
+    fn variance_without(&self, j: usize, elements: &[Element], parts: &[&Expansion], mean: f64) -> f64 {
+        let terms: Vec<Vec<(&[u16], f64)>> = elements
+            .iter()
+            .zip(parts)
+            .map(|(element, part)| {
+                let without_j = centred(part, mean, &self.constant).filter(|(alpha, _)| alpha[j] == 0);
+                without_j.map(|(alpha, c)| (alpha, element.half_width(j) * c)).collect()
+            })
+            .collect();
+        let inputs: Vec<usize> = (0..self.sides.len()).filter(|&k| k != j).collect();
+        let mut variance = 0.0;
+        for &(one, other) in &self.pairs[j] {
+            let overlaps: Vec<&Integrals> = inputs.iter().filter_map(|&k| self.of_pair(k, one, other)).collect();
+            let mut sum = 0.0;
+            for (alpha, a) in &terms[one] {
+                for (beta, b) in &terms[other] {
+                    let product = inputs.iter().zip(&overlaps).fold(a * b, |product, (&k, integrals)| {
+                        product * integrals[usize::from(alpha[k]) * self.size + usize::from(beta[k])]
+                    });
+                    sum += product;
+                }
+            }
+            variance += if one == other { sum } else { 2.0 * sum };
+        }
+        variance
+    }
+
+    fn of_pair(&self, k: usize, one: usize, other: usize) -> Option<&Integrals> {
+        let sides = &self.sides[k];
+        sides.integrals(sides.of_element[one], sides.of_element[other])
+    }
 }
 
-/// A Gauss rule that integrates products of two polynomials of one input.
-struct Rule {
-    recurrence: Recurrence,
+/// The terms of f − `mean` in an element; `constant` is the index of the mean.
+fn centred<'a>(part: &'a Expansion, mean: f64, constant: &'a [u16]) -> impl Iterator<Item = (&'a [u16], f64)> {
+    let others = part.indices.iter().zip(&part.coefficients).filter(|(alpha, _)| !alpha.is_constant());
+    std::iter::once((constant, part.mean() - mean)).chain(others.map(|(alpha, c)| (&**alpha, *c)))
+}
+
+impl Sides {
+    fn new(elements: &[Element], k: usize, recurrence: &Recurrence, size: usize) -> Option<Self> {
+        // Bounds by their bits: equal sides come from the same splits.
+        let key = |element: &Element| (element.lower[k].to_bits(), element.upper[k].to_bits());
+        let mut numbers = BTreeMap::new();
+        let mut of_side: Vec<&Element> = Vec::new();
+        let of_element = elements
+            .iter()
+            .map(|element| {
+                *numbers.entry(key(element)).or_insert_with(|| {
+                    of_side.push(element);
+                    of_side.len() - 1
+                })
+            })
+            .collect();
+        let (nodes, weights) = gauss(&recurrence.diagonal[..size], &recurrence.off_diagonal[..size - 1]);
+        let rule = Rule { recurrence, nodes, weights };
+        let mut count = 0;
+        let mut overlapping = Vec::with_capacity(of_side.len());
+        for one in &of_side {
+            let others = of_side.iter().enumerate();
+            let found: Vec<(usize, Integrals)> =
+                others.filter_map(|(b, other)| Some((b, rule.integrals(one, other, k)?))).collect();
+            count += found.len();
+            if count > MOST_OVERLAPS {
+                return None;
+            }
+            overlapping.push(found);
+        }
+        Some(Self { of_element, overlapping })
+    }
+}
+
+/// Pairs of elements whose sides overlap along every input but j.
+fn pairs_without(sides: &[Sides], j: usize, elements: &[Element]) -> Vec<(usize, usize)> {
+    let overlap = |one: &Element, other: &Element| {
+        (0..sides.len()).all(|k| k == j || (one.lower[k] < other.upper[k] && other.lower[k] < one.upper[k]))
+    };
+    let others = |one: usize| (one..elements.len()).map(move |other| (one, other));
+    let pairs = (0..elements.len()).flat_map(others);
+    pairs.filter(|&(one, other)| overlap(&elements[one], &elements[other])).collect()
+}
+
+/// A Gauss rule that integrates products of two polynomials of one input exactly.
+struct Rule<'a> {
+    recurrence: &'a Recurrence,
     nodes: Vec<f64>,
     weights: Vec<f64>,
 }
 
-impl Rule {
-    fn new(surrogate: &Surrogate, input: usize, size: usize) -> Self {
-        let recurrence = surrogate.inputs.inputs()[input].marginal.family().recurrence(size);
-        let (nodes, weights) = gauss(&recurrence.diagonal[..size], &recurrence.off_diagonal[..size - 1]);
-        Self { recurrence, nodes, weights }
-    }
-}
-
-/// What an element contributes to E\[f | ξ_u\].
-struct Part<'a> {
-    element: &'a Element,
-    /// Degrees in u and w_e^~u c_α, for the α that are zero outside u.
-    terms: Vec<(Vec<usize>, f64)>,
-}
-
-impl<'a> Part<'a> {
-    fn new(element: &'a Element, expansion: &Expansion, known: &[usize]) -> Self {
-        let outside = |k: &usize| !known.contains(k);
-        let weight: f64 = (0..element.lower.len()).filter(outside).map(|k| element.half_width(k)).product();
-        let terms = expansion.indices.iter().zip(&expansion.coefficients);
-        let terms = terms.filter(|(alpha, _)| (0..alpha.len()).filter(outside).all(|k| alpha[k] == 0));
-        let terms = terms.map(|(alpha, c)| (known.iter().map(|&k| usize::from(alpha[k])).collect(), weight * c));
-        Self { element, terms: terms.collect() }
-    }
-
-    /// Mean of the product of both contributions over the box where the sides in u overlap.
-    fn product(&self, other: &Self, known: &[usize], rules: &[Rule]) -> f64 {
-        let mut integrals = Vec::with_capacity(known.len());
-        for (&k, rule) in known.iter().zip(rules) {
-            match self.overlap(other, k, rule) {
-                Some(of_input) => integrals.push(of_input),
-                None => return 0.0,
-            }
-        }
-        let mut sum = 0.0;
-        for (alpha, a) in &self.terms {
-            for (beta, b) in &other.terms {
-                let degrees = alpha.iter().zip(beta).zip(&integrals);
-                sum += a * b * degrees.map(|((&alpha, &beta), of_input)| of_input[alpha][beta]).product::<f64>();
-            }
-        }
-        sum
-    }
-
-    /// ½∫ φ_a(ζ) φ_b(ζ′) dξ over the overlap of both sides k, for all degrees; `None` if they do not overlap.
-    fn overlap(&self, other: &Self, k: usize, rule: &Rule) -> Option<Vec<Vec<f64>>> {
-        let (one, two) = (self.element, other.element);
+impl Rule<'_> {
+    /// The integrals over the overlap of both sides k; `None` if they do not overlap.
+    fn integrals(&self, one: &Element, two: &Element, k: usize) -> Option<Integrals> {
         let (lower, upper) = (one.lower[k].max(two.lower[k]), one.upper[k].min(two.upper[k]));
         if lower >= upper {
             return None;
         }
-        let size = rule.nodes.len();
+        let size = self.nodes.len();
         let (mut first, mut second) = (vec![0.0; size], vec![0.0; size]);
-        let mut integrals = vec![vec![0.0; size]; size];
+        let mut integrals = vec![0.0; size * size];
         let (middle, half) = (0.5 * (lower + upper), 0.5 * (upper - lower));
-        for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
+        for (node, weight) in self.nodes.iter().zip(&self.weights) {
             let xi = middle + half * node;
-            rule.recurrence.evaluate((xi - one.center(k)) / one.half_width(k), &mut first);
-            rule.recurrence.evaluate((xi - two.center(k)) / two.half_width(k), &mut second);
-            for (row, a) in integrals.iter_mut().zip(&first) {
+            self.recurrence.evaluate((xi - one.center(k)) / one.half_width(k), &mut first);
+            self.recurrence.evaluate((xi - two.center(k)) / two.half_width(k), &mut second);
+            for (row, a) in integrals.chunks_exact_mut(size).zip(&first) {
                 row.iter_mut().zip(&second).for_each(|(entry, b)| *entry += half * weight * a * b);
             }
         }

@@ -65,14 +65,15 @@ fn keep_other_files(output: &Path) -> anyhow::Result<()> {
     }
     let mut start = Vec::new();
     let read = File::open(output).and_then(|file| file.take(64).read_to_end(&mut start));
-    if read.is_ok() && !start.is_empty() && !artifact::looks_like_a_surrogate(&start) {
+    if read.is_err() || (!start.is_empty() && !artifact::looks_like_a_surrogate(&start)) {
         bail!("{}: exists and is not a surrogate; name another output, or remove it first", output.display());
     }
     Ok(())
 }
 
-/// What every page of pcc says near its start.
-const PAGE_MARK: &str = "<meta name=\"generator\" content=\"pcc ";
+/// What pages of a surrogate, and of the reproduced paper, have near their start.
+const SURROGATE_PAGE: &str = "<meta name=\"generator\" content=\"pcc report ";
+const REPRODUCTION_PAGE: &str = "<meta name=\"generator\" content=\"pcc reproduce ";
 
 /// Refuses to replace a file by one of another kind, which has `mark` near its start.
 fn keep_unmarked_files(output: &Path, mark: &str) -> anyhow::Result<()> {
@@ -82,7 +83,7 @@ fn keep_unmarked_files(output: &Path, mark: &str) -> anyhow::Result<()> {
     let mut start = Vec::new();
     let read = File::open(output).and_then(|file| file.take(1024).read_to_end(&mut start));
     let is_ours = start.windows(mark.len()).any(|window| window == mark.as_bytes());
-    if read.is_ok() && !start.is_empty() && !is_ours {
+    if read.is_err() || (!start.is_empty() && !is_ours) {
         bail!("{}: exists and was not made by pcc; name another output, or remove it first", output.display());
     }
     Ok(())

@@ -3,7 +3,7 @@
 use super::super::arguments::Report;
 use super::super::{Context, Ending};
 use super::eval::sample;
-use super::{PAGE_MARK, interruptible, keep_inputs, keep_unmarked_files, read_study, read_surrogate};
+use super::{SURROGATE_PAGE, interruptible, keep_inputs, keep_unmarked_files, read_study, read_surrogate};
 use crate::artifact::{check_writable, save};
 use crate::eval::{Plan, evaluate_points};
 use crate::input::random_point;
@@ -30,7 +30,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
     let inputs: Vec<&Path> =
         [Some(options.surrogate.as_path()), options.study.as_deref()].into_iter().flatten().collect();
     keep_inputs(&options.output, &inputs)?;
-    keep_unmarked_files(&options.output, PAGE_MARK)?;
+    keep_unmarked_files(&options.output, SURROGATE_PAGE)?;
     check_writable(&options.output)?;
     let surrogate = &artifact.surrogate;
     let name = &surrogate.provenance.study_name;

@@ -2,7 +2,7 @@
 
 use super::super::arguments::{Part, Reproduce};
 use super::super::{Context, Ending, complain};
-use super::{PAGE_MARK, interruptible, keep_unmarked_files};
+use super::{REPRODUCTION_PAGE, interruptible, keep_unmarked_files};
 use crate::artifact::{check_writable, save};
 use crate::report::{figure_sheets, short_table_2};
 use crate::reproduce::{Options, Reproduction, Row};
@@ -12,16 +12,28 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-/// The files that can be written, and what each has near its start.
-const TARGETS: [(&str, &str); 7] = [
-    ("report.html", PAGE_MARK),
-    ("table2.csv", "r,method,order,direct_computations"),
-    ("table2.partial.csv", "r,method,order,direct_computations"),
-    ("table2.md", "# Table 2 of Kieu"),
-    ("figure3.svg", "sheet-title"),
-    ("figure4.svg", "sheet-title"),
-    ("errors.svg", "sheet-title"),
-];
+/// What `table2.csv` starts with.
+const ROWS: &str = "r,method,order,direct_computations";
+
+/// What figures have near their start.
+const SHEET: &str = "sheet-title";
+
+/// The files that are written, and what each has near its start.
+fn targets(wanted: &Options) -> Vec<(&'static str, &'static str)> {
+    let mut targets = vec![("report.html", REPRODUCTION_PAGE)];
+    if wanted.table_2 {
+        let table = [("table2.csv", ROWS), ("table2.partial.csv", ROWS), ("table2.md", "# Table 2 of Kieu")];
+        targets.extend(table);
+        targets.push(("errors.svg", SHEET));
+    }
+    if wanted.figure_3 {
+        targets.push(("figure3.svg", SHEET));
+    }
+    if wanted.figure_4 {
+        targets.push(("figure4.svg", SHEET));
+    }
+    targets
+}
 
 pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> anyhow::Result<Ending> {
     let wants = |part| options.only.is_none_or(|only| only == part);
@@ -35,10 +47,10 @@ pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> any
     let folder = &options.output;
     std::fs::create_dir_all(folder).with_context(|| format!("folder {} cannot be created", folder.display()))?;
     let page = folder.join("report.html");
-    for (name, mark) in TARGETS {
+    for (name, mark) in targets(&wanted) {
         keep_unmarked_files(&folder.join(name), mark)?;
+        check_writable(&folder.join(name))?;
     }
-    check_writable(&page)?;
     let start = Instant::now();
     let mut work = Reproduction::new(wanted);
     // A table that is there already is replaced by a complete one only.
