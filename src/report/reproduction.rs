@@ -74,7 +74,7 @@ fn papers_methods(groups: &[Vec<&Row>]) -> Table {
         let [r, method, order, runs, mesh, mean, variance, proportion, misclassified] = cells(group);
         let paper = papers_row(group[0]);
         let printed = |value: fn(&PaperRow) -> Range| paper.map(value);
-        let error = |value: fn(&PaperRow) -> Range| printed(value).map_or(String::new(), range);
+        let error = |value: fn(&PaperRow) -> Range| printed(value).map_or(String::new(), as_printed);
         let number = |value: fn(&PaperRow) -> Range| printed(value).map_or(String::new(), whole);
         table.row([
             r,
@@ -186,6 +186,11 @@ fn extremes(values: Vec<f64>) -> Range {
 fn whole([low, high]: Range) -> String {
     let [low, high] = [low, high].map(|value| count(value as u64));
     if low == high { low } else { format!("{low}–{high}") }
+}
+
+/// The paper's errors with the paper's digits, but for zeros at the end.
+fn as_printed([low, high]: Range) -> String {
+    if low == high { low.to_string() } else { format!("{low}–{high}") }
 }
 
 fn range(values: Range) -> String {
