@@ -48,7 +48,15 @@ fn folder(path: &Path) -> &Path {
 
 /// Where the content goes: the file itself, or what a symbolic link points to.
 fn target(path: &Path) -> io::Result<PathBuf> {
-    let Ok(metadata) = std::fs::metadata(path) else { return Ok(path.to_owned()) };
+    let Ok(metadata) = std::fs::metadata(path) else {
+        if path.is_symlink() {
+            return Err(io::Error::new(
+                io::ErrorKind::NotFound,
+                "it is a link to a file that does not exist; name the file",
+            ));
+        }
+        return Ok(path.to_owned());
+    };
     if metadata.is_dir() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder; name a file"));
     }
@@ -121,6 +129,9 @@ mod tests {
         save(&link, b"new").unwrap();
         assert!(link.is_symlink());
         assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        let dangling = folder.path().join("dangling");
+        std::os::unix::fs::symlink(folder.path().join("missing"), &dangling).unwrap();
+        assert!(save(&dangling, b"new").is_err() && dangling.is_symlink());
         assert!(check_writable(Path::new("/dev/null")).is_err());
         assert!(save(Path::new("/dev/null"), b"new").is_err());
     }
