@@ -1,6 +1,6 @@
 //! A surrogate against its model on the same points.
 
-use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
+use super::monte_carlo::{ReferenceError, check_problem, for_each_chunk, surrogate_block};
 use crate::design::Run;
 use crate::eval::Plan;
 use crate::progress::Observer;
@@ -101,17 +101,14 @@ pub fn compare(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Comparison, ReferenceError> {
-    let other_problem = || ReferenceError::other_problem(surrogate, study);
-    if surrogate.provenance.problem_hash != study.problem_hash() || surrogate.inputs != study.inputs {
-        return Err(other_problem());
-    }
+    check_problem(surrogate, study)?;
     let plan = Plan::new(surrogate);
     let mut comparison = Comparison::new(samples);
     for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, points, runs| {
         let mut modes = surrogate.modes();
         modes.sort_unstable();
         if modes != runner.modes() {
-            return Err(other_problem());
+            return Err(ReferenceError::other_problem(surrogate, study));
         }
         let block = surrogate_block(surrogate, &plan, points)?;
         comparison.classify(runs.iter().map(|run| run.spectrum.max_re()), &block);

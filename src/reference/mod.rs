@@ -7,5 +7,5 @@ mod sample;
 
 pub use certify::certify;
 pub use compare::{Comparison, ComponentError, compare};
-pub use monte_carlo::{Reference, ReferenceError, monte_carlo};
+pub use monte_carlo::{Reference, ReferenceError, check_problem, monte_carlo};
 pub use sample::ModelSample;

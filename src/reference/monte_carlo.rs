@@ -68,6 +68,16 @@ impl ReferenceError {
     }
 }
 
+/// Whether `surrogate` answers what `study` asks.
+///
+/// # Errors
+///
+/// [`ReferenceError::OtherProblem`] if model, constants, inputs or spectrum differ.
+pub fn check_problem(surrogate: &Surrogate, study: &Study) -> Result<(), ReferenceError> {
+    let is_same = surrogate.provenance.problem_hash == study.problem_hash() && surrogate.inputs == study.inputs;
+    if is_same { Ok(()) } else { Err(ReferenceError::other_problem(surrogate, study)) }
+}
+
 /// Runs the model at samples 0 … `samples` − 1 of the study's input space for `purpose`, for evaluation the points that
 /// [`crate::eval::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized points and runs.
 pub(super) fn for_each_chunk(

@@ -39,7 +39,7 @@ impl<'a> ModelSample<'a> {
         for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
             if sample.modes.is_empty() {
                 sample.modes = runner.modes().to_vec();
-                sample.eigenvalues = vec![Vec::with_capacity(samples as usize); sample.modes.len()];
+                sample.eigenvalues = vec![Vec::new(); sample.modes.len()];
             }
             for run in runs {
                 sample.max_re.push(run.spectrum.max_re());

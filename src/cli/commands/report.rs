@@ -8,11 +8,10 @@ use crate::artifact::{check_writable, save};
 use crate::eval::{Plan, evaluate_points};
 use crate::input::random_point;
 use crate::random::Purpose;
-use crate::reference::ModelSample;
+use crate::reference::{ModelSample, check_problem};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
 use crate::spectrum::Block;
 use crate::surrogate::Surrogate;
-use anyhow::bail;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -37,15 +36,9 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
     let start = Instant::now();
     let model = match (&study, &options.study) {
         (Some(study), Some(path)) => {
-            if surrogate.provenance.problem_hash != study.problem_hash() {
-                bail!(
-                    "{}: asks another question than {} was built for; give the study it was built from",
-                    path.display(),
-                    options.surrogate.display()
-                );
-            }
             let what = path.display().to_string();
-            let found = ModelSample::new(study, options.runs.unwrap_or(RUNS), options.seed, &context.terminal)
+            let found = check_problem(surrogate, study)
+                .and_then(|()| ModelSample::new(study, options.runs.unwrap_or(RUNS), options.seed, &context.terminal))
                 .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
                 .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
             Some(found)
