@@ -1,19 +1,21 @@
 //! The data of a chart as comma-separated values.
 
 use super::{Axis, Chart, Marks, Scale};
-use std::borrow::Cow;
 
 /// One line per point or bar, after a header.
 pub(super) fn write(chart: &Chart) -> String {
     let has_interval =
         |marks: &Marks| matches!(marks, Marks::Bars(bars) if bars.iter().any(|bar| bar.interval.is_some()));
     let intervals = chart.series.iter().any(|series| has_interval(&series.marks));
-    let mut text = String::new();
-    push_row(&mut text, &["series", "x", "y", "lower", "upper"][..if intervals { 5 } else { 3 }]);
+    let columns = if intervals { 5 } else { 3 };
+    let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
+    // Writing to memory cannot fail.
+    let mut push_row = |fields: [&str; 5]| drop(writer.write_record(&fields[..columns]));
+    push_row(["series", "x", "y", "lower", "upper"]);
     for series in &chart.series {
         let mut push = |x: String, y: String, interval: Option<(f64, f64)>| {
             let [lower, upper] = interval.map_or_else(Default::default, |(lower, upper)| [lower, upper].map(number));
-            push_row(&mut text, &[series.name.as_str(), &x, &y, &lower, &upper][..if intervals { 5 } else { 3 }]);
+            push_row([series.name.as_str(), &x, &y, &lower, &upper]);
         };
         match &series.marks {
             Marks::Points(points) | Marks::Symbols(points, _) | Marks::Line(points) | Marks::Area(points) => {
@@ -28,7 +30,7 @@ pub(super) fn write(chart: &Chart) -> String {
             }
         }
     }
-    text
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
 /// The name of a category, or else the number.
@@ -44,24 +46,6 @@ fn value(axis: &Axis, value: f64) -> String {
 fn number(value: f64) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-5..1e16).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }
-}
-
-fn push_row(text: &mut String, fields: &[&str]) {
-    for (index, field) in fields.iter().enumerate() {
-        if index > 0 {
-            text.push(',');
-        }
-        text.push_str(&quoted(field));
-    }
-    text.push_str("\r\n");
-}
-
-fn quoted(field: &str) -> Cow<'_, str> {
-    if field.contains([',', '"', '\r', '\n']) {
-        format!("\"{}\"", field.replace('"', "\"\"")).into()
-    } else {
-        field.into()
-    }
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ mod ticks;
 
 pub use sheet::sheet;
 pub use style::STYLE;
+pub use text::escape;
 
 /// A chart: two axes, the series drawn between them, and guide lines.
 ///

@@ -2,8 +2,13 @@
 
 use super::path::coordinate;
 
-/// `text` as XML character data or attribute value; what XML cannot hold is dropped.
-pub(super) fn escape(text: &str) -> String {
+/// `text` as character data or attribute value of XML or HTML: nothing in it is markup, line ends are spaces, and what XML cannot
+/// hold is dropped.
+///
+/// ```
+/// assert_eq!(pcc::plot::escape("<b> & 'c'"), "&lt;b&gt; &amp; &#39;c&#39;");
+/// ```
+pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
         match character {

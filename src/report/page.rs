@@ -2,7 +2,7 @@
 //! in dark.
 
 use super::table::{Align, Table};
-use crate::plot::{Chart, STYLE};
+use crate::plot::{Chart, STYLE, escape};
 use std::fmt::Write;
 
 /// Nothing but the styles and links inside the page may be loaded, whatever names it shows.
@@ -143,23 +143,7 @@ impl Page {
     }
 }
 
-/// Text inside an element or an attribute: nothing in it is markup, control characters are dropped.
-pub(super) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars().filter(|&c| c == '\n' || !c.is_control()) {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            c => escaped.push(c),
-        }
-    }
-    escaped
-}
-
-/// The same for sentences written for a terminal: numbers stay on the line of their percent sign, columns become a list, commands
+/// Sentences written for a terminal, as text of a page: numbers stay on the line of their percent sign, columns become a list, commands
 /// need no quotes.
 fn prose(text: &str) -> String {
     escape(text).replace(" %", "\u{a0}%").replace("   ", ", ").replace('`', "")
