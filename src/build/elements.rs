@@ -129,8 +129,7 @@ impl<'a> Elements<'a> {
 
     fn project(&mut self, element: usize) -> Result<(), BuildError> {
         let values = self.values(element)?;
-        let largest = self.runs[element].iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
-        let resolutions = super::evaluations::resolutions(&self.outputs, largest);
+        let resolutions = super::evaluations::resolutions(&self.outputs, &self.runs[element]);
         let projections = project(&self.grid, &self.recurrences, &self.indices, &values, &resolutions, self.observer)?;
         if let FitMethod::MultiElement(settings) = &self.study.fit.method {
             let weight = self.mesh.elements()[element].weight;
@@ -165,13 +164,15 @@ impl<'a> Elements<'a> {
         Ok(())
     }
 
-    /// The inputs along which an element asks to be halved and can be; `None` if there are none. What decays completely asks for
-    /// nothing, even if θ₁ is zero.
-    fn asks(&self, element: usize, settings: &MultiElement) -> Option<Vec<usize>> {
-        let Division { urgency, inputs } = &self.divisions[element];
-        let can_halve = |&input: &usize| self.mesh.can_halve(element, input);
-        let inputs: Vec<usize> = inputs.iter().copied().filter(can_halve).collect();
-        (*urgency > 0.0 && *urgency >= settings.theta_1 && !inputs.is_empty()).then_some(inputs)
+    /// The inputs along which an element asks to be halved and can be.
+    fn divisible_inputs(&self, element: usize) -> impl Iterator<Item = usize> {
+        self.divisions[element].inputs.iter().copied().filter(move |&input| self.mesh.can_halve(element, input))
+    }
+
+    /// Whether an element is to be divided. What decays completely asks for nothing, even if θ₁ is zero.
+    fn asks(&self, element: usize, settings: &MultiElement) -> bool {
+        let urgency = self.divisions[element].urgency;
+        urgency > 0.0 && urgency >= settings.theta_1 && self.divisible_inputs(element).next().is_some()
     }
 
     /// The element that needs it most, and the inputs along which the limits leave room for halves.
@@ -179,9 +180,10 @@ impl<'a> Elements<'a> {
         let runs_left = (self.study.design.maximum as u64).saturating_sub(self.spent) / self.grid.len() as u64;
         let room = settings.elements - self.runs.len();
         let urgency = |element: usize| self.divisions[element].urgency;
-        let candidates = (0..self.divisions.len()).filter_map(|element| Some((element, self.asks(element, settings)?)));
-        let (element, mut inputs) = candidates
-            .reduce(|most, next| if urgency(next.0) > (1.0 + EQUAL) * urgency(most.0) { next } else { most })?;
+        let candidates = (0..self.divisions.len()).filter(|&element| self.asks(element, settings));
+        let element =
+            candidates.reduce(|most, next| if urgency(next) > (1.0 + EQUAL) * urgency(most) { next } else { most })?;
+        let mut inputs: Vec<usize> = self.divisible_inputs(element).collect();
         let fits = |along: usize| {
             let parts = 1u64.checked_shl(along as u32).unwrap_or(u64::MAX);
             parts - 1 <= room as u64 && parts <= runs_left
@@ -204,8 +206,7 @@ impl<'a> Elements<'a> {
         for element in 0..self.runs.len() {
             values.iter_mut().zip(self.values(element)?).for_each(|(all, part)| all.extend(part));
         }
-        let largest = self.runs.iter().flatten().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
-        let resolutions = super::evaluations::resolutions(&self.outputs, largest);
+        let resolutions = super::evaluations::resolutions(&self.outputs, self.runs.iter().flatten());
         // Zero for components that do not vary over all elements.
         let variance = |(values, resolution): (&Vec<f64>, f64)| {
             Some(weighted_variance(values, &weights))
@@ -233,7 +234,7 @@ impl<'a> Elements<'a> {
     /// Whether no element asks to be divided any more.
     fn is_done(&self) -> bool {
         match &self.study.fit.method {
-            FitMethod::MultiElement(settings) => (0..self.runs.len()).all(|e| self.asks(e, settings).is_none()),
+            FitMethod::MultiElement(settings) => !(0..self.runs.len()).any(|element| self.asks(element, settings)),
             _ => false,
         }
     }
@@ -241,16 +242,14 @@ impl<'a> Elements<'a> {
     /// Errors are relative to the variance over all elements.
     fn fitted(&self, projection: &Projection, variance: f64, is_done: bool) -> Fitted {
         // Inside an element a component can be constant that varies from one to the next.
-        let (is_constant, varies) = (projection.variance == 0.0, variance > 0.0);
-        let (indices, coefficients) = match is_constant || !varies {
-            true => {
-                let constant = MultiIndex::constant(self.study.inputs.dimension());
-                (IndexSet::from_unsorted(vec![constant]), projection.coefficients[..1].to_vec())
-            }
-            false => (self.indices.clone(), projection.coefficients.clone()),
+        let varies = variance > 0.0;
+        let (indices, coefficients, degree) = if varies && projection.variance > 0.0 {
+            (self.indices.clone(), projection.coefficients.clone(), self.study.fit.method.max_degree())
+        } else {
+            let constant = MultiIndex::constant(self.study.inputs.dimension());
+            (IndexSet::from_unsorted(vec![constant]), projection.coefficients[..1].to_vec(), 0)
         };
         let r2 = 1.0 - projection.mean_square_residual / variance;
-        let degree = if is_constant || !varies { 0 } else { self.study.fit.method.max_degree() };
         Fitted {
             indices,
             coefficients,

@@ -111,8 +111,7 @@ impl<'a> Evaluations<'a> {
 
     /// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver.
     pub fn resolutions(&self, outputs: &[Output]) -> Vec<f64> {
-        let largest = self.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
-        resolutions(outputs, largest)
+        resolutions(outputs, &self.runs)
     }
 }
 
@@ -127,8 +126,9 @@ pub(super) fn component_values(outputs: &[Output], runs: &[Run]) -> Result<Vec<V
     Ok(components)
 }
 
-/// Differences of each component of `outputs` up to this size are rounding of a solver whose largest eigenvalue is `largest`.
-pub(super) fn resolutions(outputs: &[Output], largest: f64) -> Vec<f64> {
+/// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver in these runs.
+pub(super) fn resolutions<'a>(outputs: &[Output], runs: impl IntoIterator<Item = &'a Run>) -> Vec<f64> {
+    let largest = runs.into_iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
     let mut resolutions = vec![0.0; outputs.iter().map(|output| output.components.len()).sum()];
     for output in outputs {
         for (position, component) in output.components.iter().enumerate() {
