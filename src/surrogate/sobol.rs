@@ -18,8 +18,11 @@ use std::collections::BTreeMap;
 /// More elements, which no study asks for, have too many pairs to look at.
 const MOST_ELEMENTS: usize = 10_000;
 
-/// Overlaps of different sides of one input that are held in memory at most; a mesh of halves has few for each side.
-const MOST_OVERLAPS: usize = 2_000_000;
+/// Higher degrees, which no study asks for either, make Gauss rules and integrals too large.
+const HIGHEST_DEGREE: usize = 100;
+
+/// Integrals for one input that are held in memory at most; a mesh of halves has few overlaps for each side.
+const MOST_INTEGRALS: usize = 50_000_000;
 
 /// Sobol' indices of one component: shares of its variance.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +52,7 @@ impl Expansion {
 
 impl Surrogate {
     /// Sobol' indices of every component by id; `None` for those that do not vary. All `None` for meshes that no study gives, of
-    /// more than ten thousand elements or millions of overlaps.
+    /// more than ten thousand elements, a degree above 100, or millions of overlaps.
     pub fn sobol_indices(&self) -> Vec<Option<SobolIndices>> {
         let components = 0..self.component_count();
         if self.mesh.elements().len() == 1 {
@@ -115,6 +118,9 @@ impl Overlaps {
         }
         let degrees = surrogate.expansions.iter().flat_map(|part| part.indices.iter().flat_map(|alpha| alpha.to_vec()));
         let size = usize::from(degrees.max().unwrap_or(0)) + 1;
+        if size > HIGHEST_DEGREE + 1 {
+            return None;
+        }
         let inputs = surrogate.inputs.inputs().iter().enumerate();
         let sides: Option<Vec<Sides>> =
             inputs.map(|(k, input)| Sides::new(elements, k, &input.marginal.family().recurrence(size), size)).collect();
@@ -206,12 +212,14 @@ impl Sides {
         let mut count = 0;
         let mut overlapping = Vec::with_capacity(of_side.len());
         for one in &of_side {
-            let others = of_side.iter().enumerate();
-            let found: Vec<(usize, Integrals)> =
-                others.filter_map(|(b, other)| Some((b, rule.integrals(one, other, k)?))).collect();
-            count += found.len();
-            if count > MOST_OVERLAPS {
-                return None;
+            let mut found = Vec::new();
+            for (b, other) in of_side.iter().enumerate() {
+                let Some(integrals) = rule.integrals(one, other, k) else { continue };
+                count += integrals.len();
+                if count > MOST_INTEGRALS {
+                    return None;
+                }
+                found.push((b, integrals));
             }
             overlapping.push(found);
         }
