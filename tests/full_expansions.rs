@@ -310,3 +310,24 @@ fn shown_studies_of_full_expansions_read_back() {
         assert_eq!((again.study_hash(), &again), (study.study_hash(), &study));
     }
 }
+
+/// One overdamped degree of freedom: nothing oscillates, so there is no component to expand.
+struct Overdamped;
+
+impl Model for Overdamped {
+    fn eigenvalues(&self, _: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+        Ok(vec![Complex::new(-1.0, 0.0), Complex::new(-2.0, 0.0)])
+    }
+}
+
+#[test]
+fn models_without_an_oscillating_mode_are_refused_by_every_method() {
+    for fit in ["method = \"gpc\"", "method = \"gpc\"\nsolver = \"least-squares\"", "method = \"me-gpc\"", ""] {
+        for kind in ["-eigenvalues", ""] {
+            let mut study = study(2, kind, &format!("[fit]\n{fit}\n"));
+            study.spectrum.modes = Modes::All;
+            let refused = build_with(&study, Box::new(Overdamped), &Silent);
+            assert!(refused.is_err(), "{fit} {kind}");
+        }
+    }
+}
