@@ -1,6 +1,7 @@
 //! What a build spent and how well each component is fitted.
 
 use super::table::{Align, Table, count, significant};
+use crate::study::DesignKind;
 use crate::surrogate::{SettingValue, StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
@@ -10,9 +11,6 @@ const POOR: f64 = 0.9;
 
 /// Estimated relative error of the proportion from which a study that set no tolerance is warned.
 const LARGE_ERROR: f64 = 0.05;
-
-/// Design of quadratures.
-pub(super) const QUADRATURE: &str = "tensor-gauss";
 
 /// More levels than this are abbreviated.
 const MANY_LEVELS: usize = 6;
@@ -105,7 +103,7 @@ impl FitReport {
     /// The same for a method, which says what else there is to know and what can be done.
     fn warnings_by_method(surrogate: &Surrogate, fits: &[Self]) -> Vec<String> {
         let has = |stop: StopReason| fits.iter().any(|fit| fit.stop == stop.describe());
-        if surrogate.training.design == QUADRATURE {
+        if is_quadrature(surrogate) {
             let is_poor = |fit: &&Self| fit.r2.is_some_and(|r2| r2 < POOR);
             let misfit = |fit: &Self| {
                 format!("{} is poorly fitted at the nodes already (R² {:.2})", fit.name, fit.r2.unwrap_or(0.0))
@@ -240,6 +238,11 @@ impl BuildReport {
             elapsed_seconds,
         }
     }
+}
+
+/// Whether the model was run at the nodes of a tensor Gauss rule.
+pub(super) fn is_quadrature(surrogate: &Surrogate) -> bool {
+    surrogate.training.design == DesignKind::TensorGauss.name()
 }
 
 /// How many of the runs came with derivatives, to follow the number of runs.

@@ -164,10 +164,7 @@ fn name(row: &Row) -> String {
         "me-gpc" => "ME-gPC",
         _ => "sparse PC",
     };
-    match (row.target, row.derivatives) {
-        (_, true) => format!("{method} with derivatives"),
-        _ => method.to_owned(),
-    }
+    if row.derivatives { format!("{method} with derivatives") } else { method.to_owned() }
 }
 
 /// The paper's row for this build, if it has one: quadratures by their number of runs, sparse rows by their method.

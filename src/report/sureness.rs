@@ -61,7 +61,7 @@ impl Sureness {
 /// Whether the estimated error of a surrogate is the part of modes left out alone: the rest takes two design levels, and points left
 /// out.
 pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
-    surrogate.training.levels.len() == 1 || surrogate.training.design == super::build::QUADRATURE
+    surrogate.training.levels.len() == 1 || super::build::is_quadrature(surrogate)
 }
 
 /// What an estimated error of so many percent says.

@@ -4,7 +4,7 @@ use super::paper::TABLE_2;
 use crate::study::{Study, StudyError};
 
 /// Designs per sparse method, as in the paper.
-pub const DESIGNS: u64 = 5;
+const DESIGNS: u64 = 5;
 
 /// Studies by the paper's components and by invariants, for one to eight inputs.
 const STUDIES: [[&str; 2]; 8] = [
@@ -26,7 +26,7 @@ const ELEMENTS_BEYOND: usize = 4;
 
 /// A build of the table.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub(super) struct Case {
     /// `gpc`, `me-gpc` or `sparse`.
     pub method: &'static str,
     /// What is built; its seed is that of the design.

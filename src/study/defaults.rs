@@ -43,10 +43,9 @@ pub(super) fn full_degree(inputs: usize, is_quadrature: bool) -> u16 {
 /// Where the paper's table stops, ten times as many for multi-element expansions, which spend runs on split parents, too; for
 /// invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000 values, or 3000 values and derivatives.
 pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: &FitMethod) -> usize {
-    match target {
-        _ if matches!(method, FitMethod::Gpc(_)) => PAPERS_LIMIT as usize,
-        _ if matches!(method, FitMethod::MultiElement(_)) => 10 * PAPERS_LIMIT as usize,
-        Target::Eigenvalues => 10_000,
+    match (method, target) {
+        (FitMethod::MultiElement(_), _) => 10 * PAPERS_LIMIT as usize,
+        (FitMethod::Gpc(_), _) | (_, Target::Eigenvalues) => PAPERS_LIMIT as usize,
         _ if derivatives => (3_000 / (1 + inputs)).max(initial(target, inputs, derivatives)),
         _ => 2_000,
     }

@@ -16,6 +16,9 @@ const HIGHEST_DEGREE: i64 = 100;
 /// More elements are refused: each has expansions of its own, and finding room for the next looks at all splits.
 const MOST_ELEMENTS: i64 = 10_000;
 
+/// Entries of the matrix of a least-squares fit: two gigabytes.
+const LARGEST_MATRIX: f64 = 2.5e8;
+
 /// A method without its settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Method {
@@ -232,8 +235,7 @@ impl Lines<'_> {
             return Err(StudyError::TooManyRuns { degree, inputs, runs: whole(runs), maximum });
         }
         let numbers = runs * equations_per_run as f64 * terms(inputs, degree);
-        let is_stored = matches!(fit.method, FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { .. }, .. }));
-        if is_stored && numbers > LARGEST_MATRIX {
+        if !fit.method.is_quadrature() && numbers > LARGEST_MATRIX {
             return Err(StudyError::TooLargeMatrix { degree, inputs, runs: whole(runs) });
         }
         Ok(Some(runs as usize))
@@ -244,9 +246,6 @@ impl Lines<'_> {
 fn whole(runs: f64) -> String {
     if runs < 1e15 { format!("{runs}") } else { format!("{runs:.1e}") }
 }
-
-/// Entries of the matrix of a least-squares fit: two gigabytes.
-const LARGEST_MATRIX: f64 = 2.5e8;
 
 /// (r + p)!/(r! p!), equation 6 of the paper, exact below 2⁵³.
 fn terms(inputs: usize, degree: u16) -> f64 {
