@@ -33,8 +33,8 @@ const EVALUATOR: [&str; 10] = [
     "surrogate",
     "spectrum",
 ];
-const PURE_SPECTRUM: [&str; 7] =
-    ["Block", "Component", "ModeSummary", "Output", "OutputKind", "Summary", "spectral_abscissa"];
+const PURE_SPECTRUM: [&str; 8] =
+    ["Block", "Component", "ModeSummary", "Output", "OutputKind", "Summary", "is_equal_frequency", "spectral_abscissa"];
 
 fn layer(module: &str) -> usize {
     LAYERS

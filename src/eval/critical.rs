@@ -253,15 +253,15 @@ impl Search<'_> {
             point.copy_from_slice(&points[sample * point.len()..(sample + 1) * point.len()]);
             point[input] = xi;
         };
-        let mut block = self.evaluator.block(trials.len());
-        self.evaluator.evaluate(trials.len(), |number, point| set_point(trials[number], point), &mut block);
-        if let Some(at) = block.first_not_finite() {
+        let mut found = Vec::with_capacity(trials.len());
+        self.evaluator.max_re(trials.len(), |number, point| set_point(trials[number], point), &mut found);
+        if let Some(at) = found.iter().position(|max_re| !max_re.is_finite()) {
             let inputs = &self.surrogate.inputs;
             let mut point = vec![0.0; inputs.dimension()];
             set_point(trials[at], &mut point);
             return Err(EvalError::NotFinite { point: inputs.describe(&inputs.physical(&point)) });
         }
-        Ok(trials.iter().zip(block.max_re).map(|(&(_, xi), max_re)| End { xi, max_re }).collect())
+        Ok(trials.iter().zip(found).map(|(&(_, xi), max_re)| End { xi, max_re }).collect())
     }
 }
 

@@ -1,7 +1,8 @@
-//! A surrogate at given points.
+//! A surrogate at many points, in blocks of lanes.
 
-use super::plan::{LANES, Plan, Workspace};
-use crate::spectrum::{Block, spectral_abscissa};
+use super::lanes::{LANES, Lanes};
+use super::plan::{Plan, Results, Workspace};
+use crate::spectrum::Block;
 use crate::surrogate::Surrogate;
 use nalgebra::Complex;
 
@@ -18,110 +19,171 @@ pub fn evaluate_points(surrogate: &Surrogate, plan: &Plan, points: &[&[f64]]) ->
 pub(super) struct Evaluator<'a> {
     surrogate: &'a Surrogate,
     plan: &'a Plan,
-    modes: usize,
     workspace: Workspace,
-    /// The points one after the other.
-    points: Vec<f64>,
+    /// One point.
+    point: Vec<f64>,
+    /// With several elements: all points, block by block.
+    points: Vec<Lanes>,
     /// Their numbers, element by element.
     order: Vec<usize>,
-    /// The values of all components at each point.
-    values: Vec<f64>,
-    eigenvalues: Vec<Complex<f64>>,
+    /// Their results, block by block.
+    results: Vec<Results>,
 }
 
 impl<'a> Evaluator<'a> {
     pub fn new(surrogate: &'a Surrogate, plan: &'a Plan) -> Self {
-        let modes = surrogate.modes().len();
         Self {
             surrogate,
             plan,
-            modes,
             workspace: plan.workspace(),
+            point: vec![0.0; surrogate.inputs.dimension()],
             points: Vec::new(),
             order: Vec::new(),
-            values: Vec::new(),
-            eigenvalues: Vec::with_capacity(modes),
+            results: Vec::new(),
         }
     }
 
     /// An empty block with room for `samples`.
     pub fn block(&self, samples: usize) -> Block {
-        Block::with_capacity(self.surrogate.component_count(), self.modes, samples)
+        Block::with_capacity(self.surrogate.component_count(), self.surrogate.modes().len(), samples)
+    }
+
+    /// Evaluates `count` points. `fill` writes the standardized coordinates of the points from the given number on, one entry per
+    /// input; `visit` is given results and number of points, block by block.
+    pub fn each_block(
+        &mut self,
+        count: usize,
+        mut fill: impl FnMut(usize, &mut [Lanes]),
+        mut visit: impl FnMut(&Results, usize),
+    ) {
+        if self.plan.mesh().elements().len() > 1 {
+            return self.by_element(count, fill, visit);
+        }
+        for start in (0..count).step_by(LANES) {
+            fill(start, self.workspace.points_mut());
+            self.plan.evaluate(0, &mut self.workspace);
+            visit(self.workspace.results(), LANES.min(count - start));
+        }
     }
 
     /// Evaluates `count` points and appends the results to `block`. `set_point` writes the standardized coordinates of the
     /// point with the given number.
-    pub fn evaluate(&mut self, count: usize, mut set_point: impl FnMut(usize, &mut [f64]), block: &mut Block) {
-        let (dimension, components) = (self.surrogate.inputs.dimension(), self.surrogate.component_count());
-        self.points.resize(count * dimension, 0.0);
-        self.values.resize(count * components, 0.0);
-        for (number, point) in self.points.chunks_exact_mut(dimension).enumerate() {
-            set_point(number, point);
-        }
-        match self.plan.mesh().elements().len() {
-            1 => {
-                for start in (0..count).step_by(LANES) {
-                    self.evaluate_lanes(0, count.min(start + LANES) - start, |lane| start + lane);
-                }
-            }
-            elements => self.evaluate_by_element(elements, count),
-        }
-        for values in self.values.chunks_exact(components) {
-            self.eigenvalues.clear();
-            for output in &self.surrogate.outputs {
-                output.recombine(values, &mut self.eigenvalues);
-            }
-            let max_re = spectral_abscissa(&self.eigenvalues);
-            block.push(values, &self.eigenvalues, max_re);
-        }
+    pub fn evaluate(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), block: &mut Block) {
+        let fill = in_lanes(count, self.point.len(), set_point);
+        self.each_block(count, fill, |results, lanes| append(results, lanes, block));
+    }
+
+    /// Evaluates `count` points and appends max Re λ to `list`.
+    pub fn max_re(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<f64>) {
+        let fill = in_lanes(count, self.point.len(), set_point);
+        self.each_block(count, fill, |results, lanes| list.extend_from_slice(&results.max_re.0[..lanes]));
     }
 
     /// Sorts the points by element, maps them to the local variables, and evaluates those of each element together.
-    fn evaluate_by_element(&mut self, elements: usize, count: usize) {
-        let dimension = self.surrogate.inputs.dimension();
-        let mesh = self.plan.mesh();
-        let found: Vec<usize> = self.points.chunks_exact(dimension).map(|point| mesh.locate(point)).collect();
-        let mut starts = vec![0; elements + 1];
-        found.iter().for_each(|&element| starts[element + 1] += 1);
-        for element in 0..elements {
-            starts[element + 1] += starts[element];
+    fn by_element(
+        &mut self,
+        count: usize,
+        mut fill: impl FnMut(usize, &mut [Lanes]),
+        mut visit: impl FnMut(&Results, usize),
+    ) {
+        let dimension = self.point.len();
+        let blocks = count.div_ceil(LANES);
+        self.points.resize(blocks * dimension, Lanes::splat(0.0));
+        self.results.resize(blocks, self.workspace.results().clone());
+        for (number, points) in self.points.chunks_exact_mut(dimension).enumerate() {
+            fill(number * LANES, points);
         }
-        let mut next = starts.clone();
-        self.order.resize(count, 0);
-        for (number, (&element, point)) in found.iter().zip(self.points.chunks_exact_mut(dimension)).enumerate() {
-            self.order[next[element]] = number;
-            next[element] += 1;
-            let space = &mesh.elements()[element];
-            for (j, coordinate) in point.iter_mut().enumerate() {
-                *coordinate = (*coordinate - space.center(j)) / space.half_width(j);
-            }
-        }
+        let starts = self.sort(count);
         let order = std::mem::take(&mut self.order);
-        for element in 0..elements {
+        for element in 0..starts.len() - 1 {
             for group in order[starts[element]..starts[element + 1]].chunks(LANES) {
-                self.evaluate_lanes(element, group.len(), |lane| group[lane]);
+                self.evaluate_group(element, group);
             }
         }
         self.order = order;
+        for (number, results) in self.results.iter().enumerate() {
+            visit(results, LANES.min(count - number * LANES));
+        }
     }
 
-    /// Evaluates the points with the numbers `number(lane)`, all in this element.
-    fn evaluate_lanes(&mut self, element: usize, lanes: usize, number: impl Fn(usize) -> usize) {
-        let (dimension, components) = (self.surrogate.inputs.dimension(), self.surrogate.component_count());
-        for lane in 0..lanes {
-            let point = &self.points[number(lane) * dimension..][..dimension];
-            for (coordinate, &xi) in self.workspace.points_mut().iter_mut().zip(point) {
-                coordinate[lane] = xi;
+    /// Orders the numbers of the points by element; where the part of each element starts.
+    fn sort(&mut self, count: usize) -> Vec<usize> {
+        let (mesh, dimension) = (self.plan.mesh(), self.point.len());
+        let mut starts = vec![0; mesh.elements().len() + 1];
+        let mut found = Vec::with_capacity(count);
+        for number in 0..count {
+            let points = &self.points[number / LANES * dimension..][..dimension];
+            self.point.iter_mut().zip(points).for_each(|(xi, coordinate)| *xi = coordinate.0[number % LANES]);
+            let element = mesh.locate(&self.point);
+            starts[element + 1] += 1;
+            found.push(element);
+        }
+        for element in 1..starts.len() {
+            starts[element] += starts[element - 1];
+        }
+        let mut next = starts.clone();
+        self.order.resize(count, 0);
+        for (number, &element) in found.iter().enumerate() {
+            self.order[next[element]] = number;
+            next[element] += 1;
+        }
+        starts
+    }
+
+    /// Evaluates the points with these numbers, all in this element.
+    fn evaluate_group(&mut self, element: usize, numbers: &[usize]) {
+        let (dimension, space) = (self.point.len(), &self.plan.mesh().elements()[element]);
+        for (j, coordinate) in self.workspace.points_mut().iter_mut().enumerate() {
+            let (center, half_width) = (space.center(j), space.half_width(j));
+            for (lane, &number) in numbers.iter().enumerate() {
+                let xi = self.points[number / LANES * dimension + j].0[number % LANES];
+                coordinate.0[lane] = (xi - center) / half_width;
             }
         }
         self.plan.evaluate(element, &mut self.workspace);
-        for lane in 0..lanes {
-            let values = &mut self.values[number(lane) * components..][..components];
-            for (value, component) in values.iter_mut().zip(self.workspace.components()) {
-                *value = component[lane];
-            }
+        let found = self.workspace.results();
+        for (lane, &number) in numbers.iter().enumerate() {
+            copy_lane(found, lane, &mut self.results[number / LANES], number % LANES);
         }
     }
+}
+
+/// Writes points that are set one by one into lanes.
+fn in_lanes(
+    count: usize,
+    dimension: usize,
+    mut set_point: impl FnMut(usize, &mut [f64]),
+) -> impl FnMut(usize, &mut [Lanes]) {
+    let mut point = vec![0.0; dimension];
+    move |start, points| {
+        for lane in 0..LANES.min(count - start) {
+            set_point(start + lane, &mut point);
+            points.iter_mut().zip(&point).for_each(|(coordinate, &xi)| coordinate.0[lane] = xi);
+        }
+    }
+}
+
+fn copy_lane(from: &Results, lane: usize, to: &mut Results, target: usize) {
+    let lists = [
+        (&from.components, &mut to.components),
+        (&from.growth_rates, &mut to.growth_rates),
+        (&from.angular_frequencies, &mut to.angular_frequencies),
+    ];
+    for (from, to) in lists {
+        from.iter().zip(to).for_each(|(from, to)| to.0[target] = from.0[lane]);
+    }
+    to.max_re.0[target] = from.max_re.0[lane];
+}
+
+fn append(results: &Results, lanes: usize, block: &mut Block) {
+    for (list, component) in block.components.iter_mut().zip(&results.components) {
+        list.extend_from_slice(&component.0[..lanes]);
+    }
+    let eigenvalues = results.growth_rates.iter().zip(&results.angular_frequencies);
+    for (list, (re, im)) in block.eigenvalues.iter_mut().zip(eigenvalues) {
+        list.extend(re.0[..lanes].iter().zip(&im.0).map(|(&re, &im)| Complex::new(re, im)));
+    }
+    block.max_re.extend_from_slice(&results.max_re.0[..lanes]);
 }
 
 #[cfg(test)]

@@ -250,19 +250,19 @@ impl Comparer<'_> {
     fn column(&mut self, choice: Choice) -> Result<Column, EvalError> {
         let dimension = self.surrogate.inputs.dimension();
         let (samples, pairs) = (self.pairs.len() / (2 * dimension), &self.pairs);
-        let mut block = self.evaluator.block(samples);
+        let mut found = Vec::with_capacity(samples);
         let set_point = |number: usize, point: &mut [f64]| {
             choice.set(&pairs[number * 2 * dimension..(number + 1) * 2 * dimension], point);
         };
-        self.evaluator.evaluate(samples, set_point, &mut block);
-        if let Some(at) = block.max_re.iter().position(|&max_re| !is_usable(max_re)) {
+        self.evaluator.max_re(samples, set_point, &mut found);
+        if let Some(at) = found.iter().position(|&max_re| !is_usable(max_re)) {
             let mut point = vec![0.0; dimension];
             choice.set(&self.pairs[at * 2 * dimension..(at + 1) * 2 * dimension], &mut point);
             return Err(not_usable(&self.surrogate.inputs, &point));
         }
         Ok(Column {
-            max_re: block.max_re.iter().map(|max_re| max_re - self.center).collect(),
-            is_stable: block.max_re.iter().map(|&max_re| f64::from(max_re < 0.0)).collect(),
+            max_re: found.iter().map(|max_re| max_re - self.center).collect(),
+            is_stable: found.iter().map(|&max_re| f64::from(max_re < 0.0)).collect(),
         })
     }
 }

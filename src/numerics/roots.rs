@@ -154,11 +154,17 @@ fn quadratic(c_1: Complex<f64>, c_0: Complex<f64>) -> [Complex<f64>; 2] {
     [far, quotient(c_0, far)]
 }
 
+/// Whether a squared modulus has neither overflowed nor lost digits to underflow.
+#[inline(always)]
+pub fn is_safe_square(square: f64) -> bool {
+    square > SAFE_SQUARE && square < f64::INFINITY
+}
+
 /// The square root with a real part that is not negative, without the polar form and its rounding.
 #[inline]
 pub fn square_root(z: Complex<f64>) -> Complex<f64> {
     let square = z.norm_sqr();
-    let modulus = if square > SAFE_SQUARE && square < f64::INFINITY { square.sqrt() } else { z.norm() };
+    let modulus = if is_safe_square(square) { square.sqrt() } else { z.norm() };
     let larger_part = (0.5 * (modulus + z.re.abs())).sqrt();
     if larger_part == 0.0 {
         return ZERO;

@@ -18,7 +18,7 @@ const ROUNDS: usize = 10;
 /// let words = pcc::random::philox_4x32_10([0; 4], [0; 2]);
 /// assert_eq!(words, [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
 /// ```
-#[inline]
+#[inline(always)]
 pub fn philox_4x32_10(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
     for round in 0..ROUNDS {
         if round > 0 {

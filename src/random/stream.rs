@@ -40,16 +40,23 @@ pub struct Stream {
     used: usize,
 }
 
+/// The key of a seed, low word first.
+#[inline(always)]
+pub fn key(seed: u64) -> [u32; 2] {
+    [seed as u32, (seed >> 32) as u32]
+}
+
+/// The counter of one block of a stream.
+#[inline(always)]
+pub(super) fn counter(block: u32, purpose: Purpose, index: u64) -> [u32; 4] {
+    [block, purpose as u32, index as u32, (index >> 32) as u32]
+}
+
 impl Stream {
     /// The stream of `index` for `purpose` under `seed`.
     #[inline]
     pub fn new(seed: u64, purpose: Purpose, index: u64) -> Self {
-        Self {
-            key: [seed as u32, (seed >> 32) as u32],
-            counter: [0, purpose as u32, index as u32, (index >> 32) as u32],
-            words: [0; 4],
-            used: 4,
-        }
+        Self { key: key(seed), counter: counter(0, purpose, index), words: [0; 4], used: 4 }
     }
 
     /// The next cell of the unit interval, uniform in 0…2⁵² − 1.

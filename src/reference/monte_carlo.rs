@@ -7,6 +7,7 @@ use crate::model::ModelError;
 use crate::progress::Observer;
 use crate::random::Purpose;
 use crate::spectrum::{Block, Output, SpectrumError, Summary, Target};
+use crate::statistics::Merge;
 use crate::study::Study;
 use crate::surrogate::Surrogate;
 use thiserror::Error;

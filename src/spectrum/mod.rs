@@ -10,6 +10,6 @@ mod target;
 pub use clusters::{ClusterError, clusters};
 pub use derivatives::ReducedSystem;
 pub use modes::{Spectrum, SpectrumError};
-pub use recombination::{Component, Output, OutputKind, spectral_abscissa};
+pub use recombination::{Component, Output, OutputKind, is_equal_frequency, spectral_abscissa};
 pub use summary::{Block, ModeSummary, Summary};
 pub use target::{Modes, Target, components};

@@ -92,8 +92,13 @@ impl Output {
 
 /// Whether `first` comes after `second` in the order of modes: by frequency, equal frequencies by growth rate.
 fn ranks_after(first: &Complex<f64>, second: &Complex<f64>) -> bool {
-    let gap = first.im - second.im;
-    if gap.abs() <= EQUAL_FREQUENCY * first.im.abs() { first.re > second.re } else { gap > 0.0 }
+    if is_equal_frequency(first.im, second.im) { first.re > second.re } else { first.im - second.im > 0.0 }
+}
+
+/// Whether two frequencies are equal but for rounding.
+#[inline(always)]
+pub fn is_equal_frequency(first: f64, second: f64) -> bool {
+    (first - second).abs() <= EQUAL_FREQUENCY * first.abs()
 }
 
 /// Insertion sort: clusters are small, and equality within rounding is no total order.

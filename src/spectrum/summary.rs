@@ -1,10 +1,12 @@
 //! What many samples of a spectrum say: stability, and per mode what engineers read.
 
-use crate::statistics::{Moments, Proportion};
+use crate::statistics::{Merge, Moments, Proportion};
 use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
 
 /// Statistics of one mode.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ModeSummary {
     /// Growth rate Re λ, in 1/s.
     pub growth_rate: Moments,
@@ -17,7 +19,8 @@ pub struct ModeSummary {
 }
 
 /// Statistics of many samples. Parts merge in a fixed order to the same bits.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Summary {
     /// Samples with max Re λ < 0.
     pub stable: u64,
@@ -73,9 +76,11 @@ impl Summary {
             modes: modes.collect(),
         }
     }
+}
 
+impl Merge for Summary {
     /// Adds the samples of `other`, which has as many components and modes.
-    pub fn merge(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         self.stable += other.stable;
         self.stable_if_shifted[0] += other.stable_if_shifted[0];
         self.stable_if_shifted[1] += other.stable_if_shifted[1];

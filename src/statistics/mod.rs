@@ -2,10 +2,12 @@
 
 mod density;
 mod discordance;
+mod forest;
 mod moments;
 mod proportion;
 
 pub use density::density;
 pub use discordance::Discordance;
+pub use forest::{Forest, Merge};
 pub use moments::Moments;
 pub use proportion::{Interval, Proportion};

@@ -1,5 +1,7 @@
 //! Mean, variance and range of a stream of numbers.
 
+use serde::{Deserialize, Serialize};
+
 /// Interleaved partial results of a block: enough to keep a processor's vector units busy.
 const LANES: usize = 16;
 
@@ -34,7 +36,8 @@ fn fold_lanes(values: &[f64], start: f64, add: impl Fn(f64, f64) -> f64, combine
 /// low.merge(&high);
 /// assert_eq!((low.mean(), low.variance()), (2.5, 5.0 / 3.0));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Moments {
     count: u64,
     mean: f64,
@@ -78,6 +81,16 @@ impl Moments {
             minimum: fold_lanes(values, f64::INFINITY, minimum, minimum),
             maximum: fold_lanes(values, f64::NEG_INFINITY, maximum, maximum),
         }
+    }
+
+    /// The moments of `count` numbers with these sums of their deviations from `shift`, and of their squares: exact but for rounding
+    /// where `shift` is among the numbers or close to their mean.
+    pub fn from_sums(count: u64, shift: f64, sum: f64, squares: f64, minimum: f64, maximum: f64) -> Self {
+        if count == 0 {
+            return Self::default();
+        }
+        let deviation = sum / count as f64;
+        Self { count, mean: shift + deviation, squares: (squares - deviation * sum).max(0.0), minimum, maximum }
     }
 
     /// Adds all numbers that `other` has seen.
