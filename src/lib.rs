@@ -45,6 +45,7 @@ pub mod input;
 pub mod model;
 pub mod numerics;
 pub mod parallel;
+pub mod part;
 pub mod plot;
 pub mod polynomial;
 pub mod progress;

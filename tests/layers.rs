@@ -15,7 +15,7 @@ const LAYERS: [&[&str]; 8] = [
     &["design"],
     &["regression", "fit"],
     &["surrogate", "artifact"],
-    &["build", "eval", "reference", "reproduce"],
+    &["build", "eval", "part", "reference", "reproduce"],
     &["plot", "report", "cli"],
 ];
 

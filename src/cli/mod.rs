@@ -4,6 +4,7 @@ mod arguments;
 mod commands;
 mod points;
 mod progress;
+mod question;
 
 use crate::progress::Interrupted;
 use arguments::{Arguments, Command};
@@ -22,6 +23,8 @@ enum Ending {
     Done,
     /// A check the user asked for did not hold.
     CheckFailed,
+    /// The user asked to stop, and what there was is printed.
+    Interrupted,
 }
 
 /// What every command is given.
@@ -51,6 +54,7 @@ pub fn main() -> ExitCode {
     match run(arguments) {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::CheckFailed) => ExitCode::from(1),
+        Ok(Ending::Interrupted) => ExitCode::from(130),
         Err(error) => {
             complain(&format!("{error:#}"));
             ExitCode::from(if error.downcast_ref::<Interrupted>().is_some() { 130 } else { 2 })
@@ -82,6 +86,7 @@ fn run(arguments: Arguments) -> anyhow::Result<Ending> {
         Command::Reference(options) => commands::reference(&context, &options),
         Command::Compare(options) => commands::compare(&context, &options),
         Command::Certify(options) => commands::certify(&context, &options),
+        Command::Merge(options) => commands::merge(&context, &options),
         Command::Inspect(options) => commands::inspect(&context, &options),
         Command::Report(options) => commands::report(&context, &options),
         Command::Reproduce(options) => commands::reproduce(&context, &options),

@@ -22,9 +22,10 @@ use super::chunks::{CHUNK, in_chunks};
 use super::monte_carlo::EvalError;
 use super::plan::Plan;
 use super::points::Evaluator;
-use crate::input::{Marginal, Uniform, random_point};
+use super::region::Region;
+use crate::input::{Marginal, Uniform};
 use crate::progress::Observer;
-use crate::random::Purpose;
+use crate::random::{Purpose, Stream};
 use crate::statistics::Moments;
 use crate::surrogate::Surrogate;
 use std::ops::Range;
@@ -143,6 +144,22 @@ pub fn critical_values(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<CriticalValues, EvalError> {
+    critical_values_in(surrogate, &Region::whole(surrogate.inputs.dimension()), input, samples, seed, observer)
+}
+
+/// The same with the other inputs confined to `region`; `input` itself is looked for in all of its domain.
+///
+/// # Errors
+///
+/// As [`critical_values`].
+pub fn critical_values_in(
+    surrogate: &Surrogate,
+    region: &Region,
+    input: usize,
+    samples: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<CriticalValues, EvalError> {
     let inputs = surrogate.inputs.inputs();
     let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
     let Marginal::Uniform(domain) = chosen.marginal;
@@ -152,7 +169,7 @@ pub fn critical_values(
         samples,
         CHUNK,
         observer,
-        || Search { surrogate, evaluator: Evaluator::new(surrogate, &plan), input, seed, points: Vec::new() },
+        || Search { surrogate, region, evaluator: Evaluator::new(surrogate, &plan), input, seed, points: Vec::new() },
         |search, range| search.run(range, observer),
         |part| values.add(&part),
     )?;
@@ -182,6 +199,7 @@ struct Losing {
 /// Searches chunks of samples, with memory of its own.
 struct Search<'a> {
     surrogate: &'a Surrogate,
+    region: &'a Region,
     evaluator: Evaluator<'a>,
     input: usize,
     seed: u64,
@@ -195,7 +213,10 @@ impl Search<'_> {
         let samples = (range.end - range.start) as usize;
         self.points.resize(samples * dimension, 0.0);
         for (index, point) in range.zip(self.points.chunks_exact_mut(dimension)) {
-            random_point(&self.surrogate.inputs, self.seed, Purpose::Evaluation, index, point);
+            let mut stream = Stream::new(self.seed, Purpose::Evaluation, index);
+            for (j, coordinate) in point.iter_mut().enumerate() {
+                *coordinate = self.region.place(j, stream.next_unit());
+            }
         }
         let start: Vec<_> = (0..samples).map(|sample| (sample, grid_point(0))).collect();
         let ends = self.evaluate(&start)?;
@@ -275,6 +296,7 @@ mod tests {
     use super::*;
     use crate::eval::handmade::{XI, expansion, inputs, on_threads, polynomial, surrogate};
     use crate::eval::monte_carlo;
+    use crate::input::random_point;
     use crate::progress::Silent;
 
     /// φ_2 = √5 (3ξ² − 1)/2, so ξ² = 1/3 + 2 φ_2/(3√5).

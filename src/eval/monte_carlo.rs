@@ -58,7 +58,7 @@ pub fn monte_carlo(
     let question = Question::plain(samples, seed);
     // The plain question fits every surrogate, if only it asks for samples.
     let survey = Survey::new(surrogate, &question, InstructionSet::best()).map_err(|_| EvalError::NoSamples)?;
-    match survey.run(0..survey.chunks(), observer)? {
+    match survey.run(0..survey.layout().chunks(), observer)? {
         Progress::Interrupted(_) => Err(Interrupted.into()),
         Progress::Complete(findings) => findings.total().map(|tally| tally.summary).ok_or(EvalError::NoSamples),
     }

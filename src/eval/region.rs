@@ -1,6 +1,12 @@
 //! The part of the domain that samples are drawn from.
 
 use super::lanes::{LANES, Lanes};
+use super::question::Question;
+use super::survey_error::SurveyError;
+use crate::input::InputSpace;
+
+/// Points of all sweeps together, at most: their counts are kept in memory.
+const MOST_CELLS: u64 = 1_000_000;
 
 /// A box in the standardized domain: every input is confined to an interval, or fixed.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,4 +56,62 @@ impl Region {
             units.0[lane] = width.mul_add(units.0[lane], lower);
         }
     }
+}
+
+/// The box of every point of the sweeps, the last sweep varying fastest.
+pub(super) fn regions(inputs: &InputSpace, question: &Question) -> Result<Vec<Region>, SurveyError> {
+    let mut base = Region::whole(inputs.dimension());
+    let mut used = Vec::new();
+    let mut position = |name: &str| {
+        let found = inputs.names().position(|known| known == name);
+        let found = found.ok_or_else(|| SurveyError::unknown_input(name, inputs))?;
+        if used.contains(&found) {
+            return Err(SurveyError::InputTwice { input: name.to_owned() });
+        }
+        used.push(found);
+        Ok(found)
+    };
+    for condition in &question.conditions {
+        let input = position(&condition.input)?;
+        let lower = coordinate(inputs, input, condition.lower)?;
+        let upper = coordinate(inputs, input, condition.upper)?;
+        if condition.lower > condition.upper {
+            return Err(SurveyError::Inverted { condition: condition.clone() });
+        }
+        base.confine(input, lower, upper);
+    }
+    let mut cells = 1u64;
+    let mut regions = vec![base];
+    for sweep in &question.sweeps {
+        let input = position(&sweep.input)?;
+        if sweep.points < 2 {
+            return Err(SurveyError::TooFewSteps { sweep: sweep.clone() });
+        }
+        cells = cells.saturating_mul(u64::from(sweep.points));
+        if cells > MOST_CELLS {
+            return Err(SurveyError::TooManyCells { most: MOST_CELLS });
+        }
+        coordinate(inputs, input, sweep.from)?;
+        coordinate(inputs, input, sweep.to)?;
+        let values: Vec<f64> =
+            (0..sweep.points).map(|number| coordinate(inputs, input, sweep.value(number))).collect::<Result<_, _>>()?;
+        let at = |region: &Region, xi: f64| {
+            let mut region = region.clone();
+            region.confine(input, xi, xi);
+            region
+        };
+        regions =
+            regions.iter().flat_map(|region| values.iter().map(|&xi| at(region, xi)).collect::<Vec<_>>()).collect();
+    }
+    Ok(regions)
+}
+
+/// The standardized coordinate of a value inside the domain.
+fn coordinate(inputs: &InputSpace, input: usize, value: f64) -> Result<f64, SurveyError> {
+    let chosen = &inputs.inputs()[input];
+    if !chosen.marginal.contains(value) {
+        let (lower, upper) = (chosen.marginal.physical(-1.0), chosen.marginal.physical(1.0));
+        return Err(SurveyError::Outside { input: chosen.name.clone(), value, lower, upper });
+    }
+    Ok(chosen.marginal.standardized(value).clamp(-1.0, 1.0))
 }

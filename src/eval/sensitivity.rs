@@ -31,6 +31,7 @@ use super::correlation::{Correlation, Products};
 use super::monte_carlo::EvalError;
 use super::plan::Plan;
 use super::points::{Evaluator, evaluate_points};
+use super::region::Region;
 use crate::input::InputSpace;
 use crate::progress::Observer;
 use crate::random::{Purpose, Stream};
@@ -113,8 +114,23 @@ pub fn sensitivities(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Sensitivities, EvalError> {
+    sensitivities_in(surrogate, &Region::whole(surrogate.inputs.dimension()), samples, seed, observer)
+}
+
+/// The same for inputs confined to `region`. Inputs that are fixed there have no influence.
+///
+/// # Errors
+///
+/// As [`sensitivities`].
+pub fn sensitivities_in(
+    surrogate: &Surrogate,
+    region: &Region,
+    samples: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<Sensitivities, EvalError> {
     let plan = Plan::new(surrogate);
-    let middle = vec![0.0; surrogate.inputs.dimension()];
+    let middle: Vec<f64> = (0..surrogate.inputs.dimension()).map(|input| region.place(input, 0.5)).collect();
     let center = evaluate_points(surrogate, &plan, &[&middle]).max_re.first().copied().unwrap_or(0.0);
     if !is_usable(center) {
         return Err(not_usable(&surrogate.inputs, &middle));
@@ -124,7 +140,7 @@ pub fn sensitivities(
         samples,
         CHUNK,
         observer,
-        || Comparer { surrogate, evaluator: Evaluator::new(surrogate, &plan), seed, center, pairs: Vec::new() },
+        || Comparer { surrogate, region, evaluator: Evaluator::new(surrogate, &plan), seed, center, pairs: Vec::new() },
         |comparer, range| comparer.compare(range, observer),
         |part| comparison.merge(&part),
     )?;
@@ -220,6 +236,7 @@ struct Column {
 /// Compares chunks of samples, with memory of its own.
 struct Comparer<'a> {
     surrogate: &'a Surrogate,
+    region: &'a Region,
     evaluator: Evaluator<'a>,
     seed: u64,
     center: f64,
@@ -233,7 +250,7 @@ impl Comparer<'_> {
         let dimension = inputs.dimension();
         self.pairs.resize((range.end - range.start) as usize * 2 * dimension, 0.0);
         for (index, pair) in range.zip(self.pairs.chunks_exact_mut(2 * dimension)) {
-            draw(inputs, self.seed, index, pair);
+            draw(self.region, self.seed, index, pair);
         }
         let (a, b) = (self.column(Choice::A)?, self.column(Choice::B)?);
         let mut comparison =
@@ -267,12 +284,13 @@ impl Comparer<'_> {
     }
 }
 
-/// The standardized points A and B of sample `index`, one after the other: the first 2r numbers of its stream. The
-/// first r of them are [`crate::input::random_point`].
-fn draw(inputs: &InputSpace, seed: u64, index: u64, pair: &mut [f64]) {
+/// The standardized points A and B of sample `index`, one after the other: the first 2r numbers of its stream. In
+/// the whole domain the first r of them are [`crate::input::random_point`].
+fn draw(region: &Region, seed: u64, index: u64, pair: &mut [f64]) {
     let mut stream = Stream::new(seed, Purpose::Evaluation, index);
-    for (coordinate, input) in pair.iter_mut().zip(inputs.inputs().iter().chain(inputs.inputs())) {
-        *coordinate = input.marginal.standardized_quantile(stream.next_unit());
+    let dimension = pair.len() / 2;
+    for (j, coordinate) in pair.iter_mut().enumerate() {
+        *coordinate = region.place(j % dimension, stream.next_unit());
     }
 }
 
@@ -493,7 +511,7 @@ mod tests {
         let space = inputs(&[(-1.0, 1.0), (0.0, 5.0), (-1.0, 1.0)]);
         let (mut pair, mut point) = ([0.0; 6], [0.0; 3]);
         for index in [0, 1, 1 << 40] {
-            draw(&space, 9, index, &mut pair);
+            draw(&Region::whole(space.dimension()), 9, index, &mut pair);
             random_point(&space, 9, Purpose::Evaluation, index, &mut point);
             assert_eq!(pair[..3], point);
             assert!(pair[..3].iter().zip(&pair[3..]).all(|(a, b)| a != b));

@@ -118,7 +118,8 @@ impl SurveyError {
         Self::UnknownInput { input: name.to_owned(), known: inputs.names().collect::<Vec<_>>().join(", ") }
     }
 
-    pub(super) fn unknown_quantity(name: &str, surrogate: &Surrogate) -> Self {
+    /// The error for a quantity that the surrogate does not have.
+    pub fn unknown_quantity(name: &str, surrogate: &Surrogate) -> Self {
         let known: Vec<String> =
             Quantity::all(surrogate).into_iter().map(|quantity| quantity.name(surrogate)).collect();
         Self::UnknownQuantity { quantity: name.to_owned(), known: known.join(", ") }

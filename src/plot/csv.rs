@@ -2,20 +2,25 @@
 
 use super::{Axis, Chart, Marks, Scale};
 
-/// One line per point or bar, after a header.
+/// One line per point, bar or cell, after a header.
 pub(super) fn write(chart: &Chart) -> String {
     let has_interval =
         |marks: &Marks| matches!(marks, Marks::Bars(bars) if bars.iter().any(|bar| bar.interval.is_some()));
     let intervals = chart.series.iter().any(|series| has_interval(&series.marks));
-    let columns = if intervals { 5 } else { 3 };
+    let shares = chart.series.iter().any(|series| matches!(series.marks, Marks::Cells(_)));
+    let written = [true, true, true, shares, intervals, intervals];
     let mut writer = csv::WriterBuilder::new().terminator(csv::Terminator::CRLF).from_writer(Vec::new());
     // Writing to memory cannot fail.
-    let mut push_row = |fields: [&str; 5]| drop(writer.write_record(&fields[..columns]));
-    push_row(["series", "x", "y", "lower", "upper"]);
+    let mut push_row = |fields: [&str; 6]| {
+        let fields = fields.into_iter().zip(written).filter_map(|(field, written)| written.then_some(field));
+        drop(writer.write_record(fields));
+    };
+    push_row(["series", "x", "y", "value", "lower", "upper"]);
     for series in &chart.series {
+        let name = series.name.as_str();
         let mut push = |x: String, y: String, interval: Option<(f64, f64)>| {
             let [lower, upper] = interval.map_or_else(Default::default, |(lower, upper)| [lower, upper].map(number));
-            push_row([series.name.as_str(), &x, &y, &lower, &upper]);
+            push_row([name, &x, &y, "", &lower, &upper]);
         };
         match &series.marks {
             Marks::Points(points) | Marks::Symbols(points, _) | Marks::Line(points) | Marks::Area(points) => {
@@ -26,6 +31,15 @@ pub(super) fn write(chart: &Chart) -> String {
             Marks::Bars(bars) => {
                 for bar in bars {
                     push(value(&chart.x, bar.value), value(&chart.y, bar.category as f64), bar.interval);
+                }
+            }
+            Marks::Cells(cells) => {
+                let rows = cells.values.chunks(cells.x.len().max(1));
+                for (centre, row) in cells.y.iter().zip(rows) {
+                    let y = value(&chart.y, *centre);
+                    for (x, share) in cells.x.iter().zip(row) {
+                        push_row([name, &value(&chart.x, *x), &y, &number(*share), "", ""]);
+                    }
                 }
             }
         }
@@ -50,7 +64,7 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Bar, Color, Series};
+    use super::super::{Bar, Cells, Color, Series};
     use super::*;
 
     #[test]
@@ -65,6 +79,24 @@ mod tests {
             guides: Vec::new(),
         };
         let expected = "series,x,y,lower,upper\r\ns,0.5,\"a, \"\"b\"\"\",0.25,1e300\r\ns,0.5,7,,\r\n";
+        assert_eq!(write(&chart), expected);
+    }
+
+    #[test]
+    fn every_cell_that_has_a_value_has_a_line() {
+        let cells = Cells { x: vec![1.0, 2.0], y: vec![0.0, 1.0, 2.0], values: vec![0.25, f64::NAN, 1.0] };
+        let chart = Chart {
+            title: String::new(),
+            description: String::new(),
+            x: Axis::linear(""),
+            y: Axis::categories("", vec!["a".to_string(), "b".to_string()]),
+            series: vec![
+                Series::new("s", Color::Red, Marks::Cells(cells)),
+                Series::new("p", Color::Red, Marks::Points(vec![[3.0, 1.0]])),
+            ],
+            guides: Vec::new(),
+        };
+        let expected = "series,x,y,value\r\ns,1,a,0.25\r\ns,2,a,NaN\r\ns,1,b,1\r\np,3,b,\r\n";
         assert_eq!(write(&chart), expected);
     }
 

@@ -1,5 +1,6 @@
 //! What the data span, which gives the axes their range.
 
+use super::cells;
 use super::{Axis, Bar, Chart, Marks, Scale};
 
 /// The least and the greatest value on one axis.
@@ -9,13 +10,30 @@ pub(super) struct Extent {
     pub high: f64,
     /// Whether lengths start at zero, so that zero has to be in the picture.
     pub from_zero: bool,
+    /// The least and the greatest edge of what fills its place and needs no margin, such as cells.
+    pub filled: Option<[f64; 2]>,
 }
 
 impl Extent {
     fn include(extent: &mut Option<Self>, value: f64, from_zero: bool) {
-        let old = extent.unwrap_or(Self { low: value, high: value, from_zero });
+        let old = extent.unwrap_or(Self { low: value, high: value, from_zero, filled: None });
         let from_zero = old.from_zero || from_zero;
-        *extent = Some(Self { low: old.low.min(value), high: old.high.max(value), from_zero });
+        *extent = Some(Self { low: old.low.min(value), high: old.high.max(value), from_zero, ..old });
+    }
+
+    /// Includes all between two edges of what fills its place.
+    fn fill(extent: &mut Option<Self>, [low, high]: [f64; 2]) {
+        Self::include(extent, low, false);
+        Self::include(extent, high, false);
+        if let Some(extent) = extent {
+            let old = extent.filled.unwrap_or([low, high]);
+            extent.filled = Some([old[0].min(low), old[1].max(high)]);
+        }
+    }
+
+    /// Whether nothing needs room beyond one of the ends.
+    pub(super) fn is_edge(&self, end: f64) -> bool {
+        self.from_zero && end == 0.0 || self.filled.is_some_and(|edges| edges.contains(&end))
     }
 }
 
@@ -49,6 +67,12 @@ pub(super) fn extents(chart: &Chart) -> [Option<Extent>; 2] {
                         Extent::include(&mut x, value, true);
                     }
                     Extent::include(&mut y, bar.category as f64, false);
+                }
+            }
+            Marks::Cells(all) => {
+                if let Some([across, along]) = cells::spans(chart, all) {
+                    Extent::fill(&mut x, across);
+                    Extent::fill(&mut y, along);
                 }
             }
         }

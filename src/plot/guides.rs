@@ -27,7 +27,9 @@ pub(super) fn lines(chart: &Chart, plane: &Plane) -> String {
             Guide::Diagonal => diagonal(&mut path, chart, plane),
         }
     }
-    path.draw("chart-guide")
+    let over_cells = chart.series.iter().any(|series| matches!(series.marks, Marks::Cells(_)));
+    let halo = if over_cells { path.draw("chart-halo") } else { String::new() };
+    halo + &path.draw("chart-guide")
 }
 
 /// The labels of horizontal lines, at an end where they hide the fewest data.
@@ -66,7 +68,8 @@ fn hidden_data(chart: &Chart, plane: &Plane, place: &Rectangle) -> usize {
         Marks::Points(points) | Marks::Symbols(points, _) | Marks::Line(points) | Marks::Area(points) => {
             points.as_slice()
         }
-        Marks::Bars(_) => &[],
+        // A label hides cells wherever it is.
+        Marks::Bars(_) | Marks::Cells(_) => &[],
     });
     points.filter_map(|point| plane.point(*point)).filter(|point| place.contains(*point)).count()
 }

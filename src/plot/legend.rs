@@ -1,5 +1,6 @@
 //! The legend above the plot area.
 
+use super::levels::Ramp;
 use super::marks::{class, symbol};
 use super::path::Path;
 use super::text::{Label, shortened, width};
@@ -14,8 +15,10 @@ const DISTANCE: f64 = 6.0;
 const GAP: f64 = 20.0;
 const LONGEST_NAME: f64 = 220.0;
 
-/// The entries and their places.
+/// The entries and their places, below the scales of cells.
 pub(super) struct Legend<'a> {
+    ramps: Vec<Ramp<'a>>,
+    limit: f64,
     entries: Vec<Entry<'a>>,
     rows: usize,
 }
@@ -29,17 +32,26 @@ struct Entry<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// The legend of the named series, wrapped to `limit`; empty unless there are names to tell apart.
+    /// The legend of the named series, wrapped to `limit`; without cells empty unless there are names to tell apart.
     pub(super) fn new(series: &'a [Series], limit: f64) -> Self {
-        let mut entries: Vec<Entry> = Vec::new();
+        let (mut entries, mut ramps): (Vec<Entry>, Vec<Ramp>) = Default::default();
         for Series { name, color, marks } in series.iter().filter(|series| !series.name.is_empty()) {
+            if matches!(marks, Marks::Cells(_)) {
+                if ramps.iter().all(|ramp| ramp.name != name) {
+                    ramps.push(Ramp { name });
+                }
+                continue;
+            }
             match entries.iter_mut().find(|entry| entry.name == name && entry.color == *color) {
                 Some(entry) => entry.marks.push(marks),
                 None => entries.push(Entry { name, color: *color, marks: vec![marks], left: 0.0, row: 0 }),
             }
         }
-        if entries.len() < 2 {
-            return Self { entries: Vec::new(), rows: 0 };
+        if entries.len() + ramps.len() < 2 {
+            entries.clear();
+        }
+        if entries.is_empty() {
+            return Self { ramps, limit, entries, rows: 0 };
         }
         let (mut left, mut row) = (0.0, 0);
         for entry in &mut entries {
@@ -50,15 +62,23 @@ impl<'a> Legend<'a> {
             (entry.left, entry.row) = (left, row);
             left += room + GAP;
         }
-        Self { entries, rows: row + 1 }
+        Self { ramps, limit, entries, rows: row + 1 }
+    }
+
+    fn ramps_height(&self) -> f64 {
+        self.ramps.len() as f64 * Ramp::HEIGHT
     }
 
     pub(super) fn height(&self) -> f64 {
-        self.rows as f64 * ROW
+        self.ramps_height() + self.rows as f64 * ROW
     }
 
     pub(super) fn draw(&self, left: f64, top: f64) -> String {
-        self.entries.iter().map(|entry| entry.draw(left + entry.left, top + (entry.row as f64 + 0.5) * ROW)).collect()
+        let place = |row: usize| [left, top + row as f64 * Ramp::HEIGHT];
+        let ramps = self.ramps.iter().enumerate().map(|(row, ramp)| ramp.draw(place(row), self.limit));
+        let top = top + self.ramps_height();
+        let middle = |entry: &Entry| top + (entry.row as f64 + 0.5) * ROW;
+        ramps.chain(self.entries.iter().map(|entry| entry.draw(left + entry.left, middle(entry)))).collect()
     }
 }
 
@@ -103,11 +123,14 @@ fn sample(marks: &Marks, [left, middle]: [f64; 2], width: f64) -> String {
             filling + &edge.move_to([left, middle - 4.0]).line_to([right[0], middle - 4.0]).draw("chart-line")
         }
         Marks::Bars(_) => path.rectangle([left, middle - 5.0], width, 10.0).draw("chart-bars"),
+        // Cells have a scale instead.
+        Marks::Cells(_) => String::new(),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Cells;
     use super::*;
 
     fn named(names: &[&str]) -> Vec<Series> {
@@ -119,6 +142,17 @@ mod tests {
         assert_eq!(Legend::new(&named(&["one"]), 500.0).rows, 0);
         assert_eq!(Legend::new(&named(&["one", "one", ""]), 500.0).rows, 0);
         assert_eq!(Legend::new(&named(&["one", "other"]), 500.0).rows, 1);
+    }
+
+    #[test]
+    fn cells_have_a_scale_whatever_else_there_is() {
+        let cells = |name: &str| Series::new(name, Color::Blue, Marks::Cells(Cells::default()));
+        let lone = [cells("share")];
+        assert_eq!(Legend::new(&lone, 500.0).height(), Ramp::HEIGHT);
+        let same = [cells("share"), cells(""), cells("share")];
+        assert_eq!(Legend::new(&same, 500.0).height(), Ramp::HEIGHT);
+        let with_line = [vec![cells("share")], named(&["limit"])].concat();
+        assert_eq!(Legend::new(&with_line, 500.0).height(), Ramp::HEIGHT + ROW);
     }
 
     #[test]

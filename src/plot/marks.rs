@@ -1,5 +1,6 @@
 //! The data themselves.
 
+use super::cells;
 use super::extent::drawable_bar;
 use super::layout::Plane;
 use super::path::{Path, tenths};
@@ -31,20 +32,24 @@ pub(super) fn class(color: Color) -> &'static str {
 pub(super) fn draw(chart: &Chart, plane: &Plane) -> String {
     let groups = chart.series.iter().filter(|series| matches!(series.marks, Marks::Bars(_))).count();
     let mut group = 0;
+    let mut over_cells = false;
     let mut text = String::new();
     for series in &chart.series {
         let marks = match &series.marks {
             Marks::Points(points) => dots(points, plane),
             Marks::Symbols(points, shape) => symbols(points, *shape, plane),
-            Marks::Line(points) => line(points, plane),
-            Marks::Area(points) => area(points, plane) + &line(points, plane),
+            Marks::Line(points) => line(points, plane, over_cells),
+            Marks::Area(points) => area(points, plane) + &line(points, plane, over_cells),
             Marks::Bars(all) => {
                 group += 1;
                 bars(chart, all, plane, [group, groups])
             }
+            Marks::Cells(all) => cells::draw(chart, all, plane),
         };
         if !marks.is_empty() {
-            text.push_str(&format!("<g class=\"{}\">\n{marks}</g>\n", class(series.color)));
+            let over = if over_cells { " chart-over" } else { "" };
+            text.push_str(&format!("<g class=\"{}{over}\">\n{marks}</g>\n", class(series.color)));
+            over_cells |= matches!(series.marks, Marks::Cells(_));
         }
     }
     text
@@ -96,7 +101,7 @@ fn parts(points: &[[f64; 2]], plane: &Plane) -> Vec<Vec<[f64; 2]>> {
     parts.filter(|part: &Vec<_>| !part.is_empty()).collect()
 }
 
-fn line(points: &[[f64; 2]], plane: &Plane) -> String {
+fn line(points: &[[f64; 2]], plane: &Plane, over_cells: bool) -> String {
     let (mut path, mut single) = (Path::default(), Path::default());
     for mut part in parts(points, plane) {
         part.dedup_by_key(|point| point.map(tenths));
@@ -106,7 +111,8 @@ fn line(points: &[[f64; 2]], plane: &Plane) -> String {
             follow(&mut path, &part);
         }
     }
-    path.draw("chart-line") + &single.draw("chart-points")
+    let halo = if over_cells { path.draw("chart-halo") } else { String::new() };
+    halo + &path.draw("chart-line") + &single.draw("chart-points")
 }
 
 fn area(points: &[[f64; 2]], plane: &Plane) -> String {

@@ -4,16 +4,21 @@
 //! an HTML page that carries [`STYLE`]; [`sheet`] draws several charts as the panels of one file that stands alone.
 //! [`Chart::to_csv`] gives the numbers behind the picture.
 //!
+//! Besides points, lines and bars there are [`Cells`]: a share over two parameters, such as a stability map. They are
+//! shaded in ten levels, whose hue changes at one half, and the legend has a scale for them.
+//!
 //! Colours, line widths and fonts are left to the style sheet, so one picture follows light and dark; the markup holds
 //! geometry only. The output has no scripts and no references to other files, and depends on nothing but the input.
 //! No input makes it panic: numbers that cannot be drawn are skipped, and names of any kind become plain text.
 
+mod cells;
 mod csv;
 mod extent;
 mod frame;
 mod guides;
 mod layout;
 mod legend;
+mod levels;
 mod marks;
 mod notes;
 mod numbers;
@@ -115,7 +120,7 @@ pub enum Scale {
 pub struct Series {
     /// Name in the legend; a series without a name has no entry there.
     pub name: String,
-    /// Colour of all its marks.
+    /// Colour of all its marks; cells have those of their levels instead.
     pub color: Color,
     /// The data and their shape.
     pub marks: Marks,
@@ -162,6 +167,9 @@ pub enum Marks {
     /// Horizontal bars from zero. They need [`Scale::Categories`] on the vertical axis; several series of bars share
     /// the place of a category.
     Bars(Vec<Bar>),
+    /// Rectangles shaded by a share, such as a stability map. They hide the series before them; a name gives them a
+    /// scale in the legend.
+    Cells(Cells),
 }
 
 /// Shape of a larger marker.
@@ -183,6 +191,40 @@ pub struct Bar {
     pub value: f64,
     /// Lower and upper end of the whisker, such as a confidence interval.
     pub interval: Option<(f64, f64)>,
+}
+
+/// A share for every cell of a grid.
+///
+/// Cells reach half way to the neighbouring centres (on a logarithmic axis as it shows them), the outermost ones as far
+/// to the other side, and fill the axes: ranges that follow from the data have no margin beyond them. Cells finer than
+/// the resolution of the picture are drawn as the mean of those in one place.
+///
+/// ```
+/// # use pcc::plot;
+/// use plot::{Axis, Cells, Chart, Color, Marks, Series};
+///
+/// let share = Cells { x: vec![0.2, 0.3, 0.4], y: vec![1.0, 2.0], values: vec![1.0, 0.7, 0.2, 0.9, 0.4, f64::NAN] };
+/// let chart = Chart {
+///     title: "Stability map".to_string(),
+///     description: "Less is stable where friction and damping ratio are large.".to_string(),
+///     x: Axis::linear("Friction coefficient μ"),
+///     y: Axis::linear("Damping ratio"),
+///     series: vec![Series::new("Proportion stable", Color::Blue, Marks::Cells(share))],
+///     guides: Vec::new(),
+/// };
+/// assert!(chart.to_svg("map").contains("<path class=\"chart-level-7\""));
+/// assert_eq!(chart.to_csv().lines().nth(2), Some("Proportion stable,0.3,1,0.7"));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cells {
+    /// Centres on the horizontal axis, usually ascending: they are taken in the order in which they lie there. Those
+    /// the axis has no place for are skipped, and of equal ones all but the first.
+    pub x: Vec<f64>,
+    /// Centres on the vertical axis, likewise.
+    pub y: Vec<f64>,
+    /// Shares from 0 to 1, row by row: first those at the first `y`, one for each `x`. Shares beyond are drawn as the
+    /// nearer end. Those that are not finite or missing leave a gap; surplus ones are ignored.
+    pub values: Vec<f64>,
 }
 
 /// A reference line across the plot area, with a small label (which may be empty).
@@ -215,8 +257,8 @@ impl Chart {
 
     /// All data of the chart as comma-separated values (RFC 4180), also those that could not be drawn.
     ///
-    /// The columns are `series`, `x`, `y`, and where a bar has an interval `lower`, `upper`. Categories have their
-    /// names.
+    /// The columns are `series`, `x`, `y`, where there are cells `value`, and where a bar has an interval `lower`,
+    /// `upper`. Categories have their names; cells without a value have no line.
     pub fn to_csv(&self) -> String {
         csv::write(self)
     }

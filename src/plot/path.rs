@@ -74,6 +74,51 @@ impl Path {
     }
 }
 
+/// The data of a `<path>` element that is full of axis-parallel rectangles, for a [`Blocks::group`].
+///
+/// Relative coordinates keep it short. They are tenths, because sums of whole numbers are exact: edges that are reached
+/// in different ways are equal, and no gap opens between neighbours.
+#[derive(Default)]
+pub(super) struct Blocks {
+    path: Path,
+    /// Where the last rectangle has left the pen, in tenths.
+    pen: [i64; 2],
+}
+
+impl Blocks {
+    /// Adds a rectangle from its top left to its bottom right corner; neighbours with the same edge meet exactly.
+    pub(super) fn push(&mut self, from: [f64; 2], to: [f64; 2]) {
+        let ([left, top], [right, bottom]) = (from.map(tenths), to.map(tenths));
+        if left >= right || top >= bottom {
+            return;
+        }
+        let height = bottom - top;
+        // A filled part needs no closing line; without it the pen stays where the next cell of a row begins.
+        let steps = [('m', left - self.pen[0]), (' ', top - self.pen[1]), ('v', height), ('h', right - left)];
+        for (command, length) in steps.into_iter().chain([('v', -height)]) {
+            // A minus sign separates numbers by itself.
+            if command != ' ' || length >= 0 {
+                self.path.0.push(command);
+            }
+            self.path.raw(&length.to_string());
+        }
+        self.pen = [right, top];
+    }
+
+    /// The `<path>` element, or nothing if there is nothing to draw.
+    pub(super) fn draw(&self, class: &str) -> String {
+        self.path.draw(class)
+    }
+
+    /// Some of these elements at their place, or nothing if there are none.
+    pub(super) fn group(elements: &str) -> String {
+        if elements.is_empty() {
+            return String::new();
+        }
+        format!("<g class=\"chart-cells\" transform=\"scale(0.1)\">\n{elements}</g>\n")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,5 +128,16 @@ mod tests {
         let texts = [0.04, -0.04, -0.25, 12.0, 12.34, -7.96].map(coordinate);
         assert_eq!(texts, ["0", "0", "-0.3", "12", "12.3", "-8"]);
         assert_eq!([f64::NAN, f64::INFINITY, -1e300].map(coordinate), ["0", "100000", "-100000"]);
+    }
+
+    #[test]
+    fn blocks_are_relative_to_the_one_before() {
+        let mut blocks = Blocks::default();
+        for (from, to) in [([10.0, 5.0], [12.0, 8.04]), ([12.0, 5.0], [13.5, 8.0]), ([1.0, 2.0], [1.02, 4.0])] {
+            blocks.push(from, to);
+        }
+        blocks.push([3.0, 0.0], [4.0, 5.0]);
+        let expected = "m100 50v30h20v-30m0 0v30h15v-30m-105-50v50h10v-50";
+        assert_eq!(blocks.draw("c"), format!("<path class=\"c\" d=\"{expected}\"/>\n"));
     }
 }

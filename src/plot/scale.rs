@@ -63,8 +63,9 @@ fn linear_range(wanted: Option<(f64, f64)>, extent: Option<Extent>) -> (f64, f64
     if let Some((one, other)) = wanted.filter(|(one, other)| one.is_finite() && other.is_finite()) {
         return widened(one.min(other), one.max(other));
     }
-    let Some(Extent { mut low, mut high, from_zero }) = extent else { return (0.0, 1.0) };
-    if from_zero {
+    let Some(extent) = extent else { return (0.0, 1.0) };
+    let Extent { mut low, mut high, .. } = extent;
+    if extent.from_zero {
         (low, high) = (low.min(0.0), high.max(0.0));
     }
     let (wide_low, wide_high) = widened(low, high);
@@ -72,15 +73,14 @@ fn linear_range(wanted: Option<(f64, f64)>, extent: Option<Extent>) -> (f64, f64
         return (wide_low, wide_high);
     }
     let margin = high * MARGIN - low * MARGIN;
-    let at_zero = |end: f64| from_zero && end == 0.0;
     (
-        if at_zero(low) { low } else { (low - margin).max(f64::MIN) },
-        if at_zero(high) { high } else { (high + margin).min(f64::MAX) },
+        if extent.is_edge(low) { low } else { (low - margin).max(f64::MIN) },
+        if extent.is_edge(high) { high } else { (high + margin).min(f64::MAX) },
     )
 }
 
 /// The range itself, or a wider one around it if it is too narrow to draw.
-fn widened(low: f64, high: f64) -> (f64, f64) {
+pub(super) fn widened(low: f64, high: f64) -> (f64, f64) {
     let size = low.abs().max(high.abs());
     let half = high / 2.0 - low / 2.0;
     if half > size * NARROWEST_PART && half > NARROWEST {
@@ -92,14 +92,39 @@ fn widened(low: f64, high: f64) -> (f64, f64) {
 
 fn logarithmic_range(wanted: Option<(f64, f64)>, extent: Option<Extent>) -> (f64, f64) {
     let positive = |value: f64| value.is_finite() && value > 0.0;
-    let (low, high, margin) = match (wanted.filter(|(one, other)| positive(*one) && positive(*other)), extent) {
-        (Some((one, other)), _) => (one.min(other).log10(), one.max(other).log10(), 0.0),
-        (None, Some(extent)) => (extent.low.log10(), extent.high.log10(), MARGIN),
-        (None, None) => (0.0, 1.0, 0.0),
+    let (low, high, margins) = match (wanted.filter(|(one, other)| positive(*one) && positive(*other)), extent) {
+        (Some((one, other)), _) => (one.min(other), one.max(other), [0.0; 2]),
+        (None, Some(extent)) => {
+            let margin = |end| if extent.is_edge(end) { 0.0 } else { MARGIN };
+            (extent.low, extent.high, [extent.low, extent.high].map(margin))
+        }
+        (None, None) => (1.0, 10.0, [0.0; 2]),
     };
-    let padding = if high - low < 1e-9 { 0.5 } else { (high - low) * margin };
+    let (low, high) = (low.log10(), high.log10());
+    let padding = |margin| if high - low < 1e-9 { 0.5 } else { (high - low) * margin };
     // Powers of ten beyond these are no numbers.
-    ((low - padding).max(SMALLEST.log10()), (high + padding).min(f64::MAX.log10()))
+    ((low - padding(margins[0])).max(SMALLEST.log10()), (high + padding(margins[1])).min(f64::MAX.log10()))
+}
+
+/// Where the axis has `value`: its decimal logarithm on a logarithmic one.
+pub(super) fn position(axis: &Axis, value: f64) -> f64 {
+    if axis.scale == Scale::Logarithmic { value.log10() } else { value }
+}
+
+/// The position itself, or the nearest one of a number.
+pub(super) fn limited(axis: &Axis, position: f64) -> f64 {
+    match axis.scale {
+        Scale::Logarithmic => position.clamp(SMALLEST.log10(), f64::MAX.log10()),
+        _ => position.clamp(f64::MIN, f64::MAX),
+    }
+}
+
+/// The value at a position, which the axis has a place for.
+pub(super) fn value(axis: &Axis, position: f64) -> f64 {
+    match axis.scale {
+        Scale::Logarithmic => 10f64.powf(position).clamp(SMALLEST, f64::MAX),
+        _ => position,
+    }
 }
 
 #[cfg(test)]
@@ -107,7 +132,7 @@ mod tests {
     use super::*;
 
     fn extent(low: f64, high: f64) -> Option<Extent> {
-        Some(Extent { low, high, from_zero: false })
+        Some(Extent { low, high, from_zero: false, filled: None })
     }
 
     #[test]
@@ -141,6 +166,17 @@ mod tests {
         let impossible = Mapping::new(&Axis::logarithmic("").between(0.0, 10.0), data);
         assert_eq!(impossible, Mapping::new(&Axis::logarithmic(""), data));
         assert_eq!(impossible.fraction(-1.0), None);
+    }
+
+    #[test]
+    fn what_fills_its_place_has_no_margin() {
+        let filled = Some([1.0, 9.0]);
+        for axis in [Axis::linear(""), Axis::logarithmic("")] {
+            let exact = Mapping::new(&axis, Some(Extent { low: 1.0, high: 9.0, from_zero: false, filled }));
+            assert_eq!([1.0, 9.0].map(|end| exact.fraction(end)), [Some(0.0), Some(1.0)]);
+            let beyond = Mapping::new(&axis, Some(Extent { low: 1.0, high: 10.0, from_zero: false, filled }));
+            assert!(beyond.fraction(1.0) == Some(0.0) && beyond.fraction(10.0) < Some(1.0));
+        }
     }
 
     #[test]

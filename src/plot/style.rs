@@ -4,6 +4,10 @@
 ///
 /// Everything hangs on custom properties of `.chart`, which a page may set to other values. Printed charts are light.
 // Dark applies to screens only, which leaves light for print.
+//
+// The levels of cells go from the paper to its opposite in lightness, so that their order survives grey prints and every
+// kind of colour blindness. Amber below one half and blue from there on, which red-, green- and blue-blind readers tell
+// apart, show where that border is. Edges are crisp because smoothed ones of neighbours would let the paper through.
 pub const STYLE: &str = "\
 .chart {
   --chart-paper: #ffffff;
@@ -18,6 +22,16 @@ pub const STYLE: &str = "\
   --chart-purple: #af60a9;
   --chart-teal: #005064;
   --chart-gray: #66686a;
+  --chart-level-0: #fbeec9;
+  --chart-level-1: #f5dca6;
+  --chart-level-2: #efca86;
+  --chart-level-3: #e7b76a;
+  --chart-level-4: #dea553;
+  --chart-level-5: #5a93bb;
+  --chart-level-6: #3d7fb3;
+  --chart-level-7: #276aa9;
+  --chart-level-8: #1c5699;
+  --chart-level-9: #154286;
   display: block;
   max-width: 100%;
   height: auto;
@@ -39,6 +53,16 @@ pub const STYLE: &str = "\
     --chart-purple: #b95fb1;
     --chart-teal: #aaeaff;
     --chart-gray: #9aa2ae;
+    --chart-level-0: #3c2a13;
+    --chart-level-1: #4e3614;
+    --chart-level-2: #624213;
+    --chart-level-3: #754e14;
+    --chart-level-4: #895b16;
+    --chart-level-5: #508cc7;
+    --chart-level-6: #65a2db;
+    --chart-level-7: #7eb8eb;
+    --chart-level-8: #9bcef8;
+    --chart-level-9: #c1e3fe;
   }
 }
 .chart-blue { --chart-color: var(--chart-blue); }
@@ -48,8 +72,18 @@ pub const STYLE: &str = "\
 .chart-purple { --chart-color: var(--chart-purple); }
 .chart-teal { --chart-color: var(--chart-teal); }
 .chart-gray { --chart-color: var(--chart-gray); }
+.chart-level-0 { fill: var(--chart-level-0); }
+.chart-level-1 { fill: var(--chart-level-1); }
+.chart-level-2 { fill: var(--chart-level-2); }
+.chart-level-3 { fill: var(--chart-level-3); }
+.chart-level-4 { fill: var(--chart-level-4); }
+.chart-level-5 { fill: var(--chart-level-5); }
+.chart-level-6 { fill: var(--chart-level-6); }
+.chart-level-7 { fill: var(--chart-level-7); }
+.chart-level-8 { fill: var(--chart-level-8); }
+.chart-level-9 { fill: var(--chart-level-9); }
 .chart-paper { fill: var(--chart-paper); }
-.chart-grid, .chart-axis, .chart-guide, .chart-line, .chart-points, .chart-whiskers { fill: none; }
+.chart-grid, .chart-axis, .chart-guide, .chart-line, .chart-points, .chart-whiskers, .chart-halo { fill: none; }
 .chart-grid { stroke: var(--chart-grid); stroke-width: 1px; }
 .chart-axis { stroke: var(--chart-axis); stroke-width: 1px; }
 .chart-guide { stroke: var(--chart-ink); stroke-width: 1px; stroke-dasharray: 5 3; }
@@ -59,6 +93,9 @@ pub const STYLE: &str = "\
 .chart-area { fill: var(--chart-color); fill-opacity: 0.18; }
 .chart-bars { fill: var(--chart-color); fill-opacity: 0.85; }
 .chart-whiskers { stroke: var(--chart-ink); stroke-width: 1px; }
+.chart-cells { shape-rendering: crispEdges; }
+.chart-halo { stroke: var(--chart-paper); stroke-width: 4px; stroke-opacity: 0.8; stroke-linejoin: round; }
+.chart-over .chart-symbols { stroke: var(--chart-paper); stroke-width: 2px; paint-order: stroke; }
 .chart text { fill: var(--chart-ink); }
 .chart text.chart-tick, .chart text.chart-empty { fill: var(--chart-muted); }
 .chart-label, .chart-empty { font-size: 13px; }
@@ -75,7 +112,7 @@ pub const STYLE: &str = "\
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Color, marks};
+    use super::super::{Color, levels, marks};
     use super::*;
 
     /// The values of a custom property: light, then dark.
@@ -118,6 +155,8 @@ mod tests {
 
     type Matrix = [[f64; 3]; 3];
 
+    const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
     /// Linear light as full protanopes, deuteranopes and tritanopes see it (Machado, Oliveira and Fernandes 2009).
     const DEFICIENCIES: [Matrix; 3] = [
         [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
@@ -155,6 +194,28 @@ mod tests {
                     assert!(distance > 0.06, "{color:?} and {other:?}: {distance}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn levels_are_in_order_of_lightness_for_all_readers() {
+        let cases = [0, 1].into_iter().flat_map(|scheme| DEFICIENCIES.map(|matrix| (scheme, matrix)));
+        for (scheme, seen_by) in cases.chain([(0, IDENTITY), (1, IDENTITY)]) {
+            let lightness = |name: &&str| oklab(times(seen_by, light(values(name)[scheme])))[0];
+            let all: Vec<f64> = ["chart-paper"].iter().chain(&levels::CLASSES).map(lightness).collect();
+            let sign = (all[10] - all[0]).signum();
+            let steps: Vec<f64> = all.windows(2).map(|pair| (pair[1] - pair[0]) * sign).collect();
+            assert!(steps.iter().all(|step| *step > 0.04), "scheme {scheme}: {steps:?}");
+        }
+    }
+
+    #[test]
+    fn levels_below_and_above_one_half_differ_in_hue() {
+        for (scheme, seen_by) in [0, 1].into_iter().flat_map(|scheme| DEFICIENCIES.map(|matrix| (scheme, matrix))) {
+            let seen = |level: usize| oklab(times(seen_by, light(values(levels::CLASSES[level])[scheme])));
+            let [[_, low_a, low_b], [_, high_a, high_b]] = [seen(4), seen(5)];
+            let distance = (low_a - high_a).hypot(low_b - high_b);
+            assert!(distance > 0.1, "scheme {scheme}: {distance}");
         }
     }
 

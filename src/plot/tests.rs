@@ -1,6 +1,7 @@
 //! Properties of whole pictures.
 
 use super::*;
+use proptest::prelude::*;
 
 fn chart(x: Axis, y: Axis, series: Vec<Series>) -> Chart {
     Chart { title: "T".to_string(), description: "D".to_string(), x, y, series, guides: Vec::new() }
@@ -86,6 +87,7 @@ fn no_numbers_upset_any_kind_of_marks() {
         Marks::Line(points.clone()),
         Marks::Area(points.clone()),
         Marks::Bars(bars),
+        Marks::Cells(Cells { x: extremes.to_vec(), y: extremes.to_vec(), values: extremes.repeat(12) }),
     ];
     let scales = || [Axis::linear("x"), Axis::logarithmic("x"), Axis::categories("x", names())];
     for (x, y) in scales().into_iter().flat_map(|x| scales().map(|y| (x.clone(), y))) {
@@ -132,4 +134,78 @@ fn bars_of_several_series_lie_side_by_side() {
         .collect();
     // The first two are in the plot area, the others in the legend.
     assert!(tops.len() == 4 && tops[1] - tops[0] > 10.0, "{tops:?}");
+}
+
+/// A map like that of a stability limit, with noise as from random samples.
+fn map(size: u32, noise: f64) -> Cells {
+    let centres: Vec<f64> = (0..size).map(|index| f64::from(index) / f64::from(size)).collect();
+    let share = |x: f64, y: f64| 1.0 / (1.0 + (12.0 * (x * x + y - 0.9 - 0.2 * (7.0 * x).sin())).exp());
+    let random = |index: usize| (index * 7919 % 10_007) as f64 / 10_007.0 - 0.5;
+    let places = centres.iter().flat_map(|&y| centres.iter().map(move |&x| (x, y)));
+    let values = places.enumerate().map(|(index, (x, y))| share(x, y) + noise * random(index)).collect();
+    Cells { x: centres.clone(), y: centres, values }
+}
+
+#[test]
+fn maps_stay_small() {
+    let size = |size, noise| both_linear(Marks::Cells(map(size, noise))).to_svg("a").len();
+    for (cells, noise, largest) in
+        [(101, 0.0, 40_000), (101, 0.1, 100_000), (1001, 0.0, 150_000), (1001, 2.0, 2_500_000)]
+    {
+        let found = size(cells, noise);
+        assert!(found < largest, "{cells} with noise {noise}: {found}");
+    }
+}
+
+#[test]
+fn cells_fill_the_axes_without_a_margin() {
+    let cells = Cells { x: vec![0.0, 1.0], y: vec![5.0], values: vec![0.2, 0.8] };
+    let svg = both_linear(Marks::Cells(cells)).to_svg("a");
+    let clip = paths(&svg, "chart-clip")[0];
+    let corner = clip.split('L').next().unwrap().trim_start_matches('M');
+    let corner: Vec<f64> = corner.split(' ').map(|number| number.parse().unwrap()).collect();
+    let start = format!("m{:.0} {:.0}v3000", corner[0] * 10.0, corner[1] * 10.0);
+    assert!(paths(&svg, "chart-level-2")[0].starts_with(&start), "{clip}");
+    // In the plot area and in the scale, which has all levels.
+    assert_eq!((paths(&svg, "chart-level-8").len(), paths(&svg, "chart-level-0").len()), (2, 1));
+}
+
+#[test]
+fn lines_over_cells_stand_out() {
+    let mut chart = both_linear(Marks::Line(vec![[0.0, 0.0], [1.0, 1.0]]));
+    assert!(!chart.to_svg("a").contains("chart-halo"));
+    chart.series.insert(0, Series::new("", Color::Blue, Marks::Cells(map(5, 0.0))));
+    chart.guides.push(Guide::Diagonal);
+    assert_eq!(paths(&chart.to_svg("a"), "chart-halo").len(), 2);
+}
+
+/// Any number, special ones more often than they would come.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![-1.0..2.0f64, any::<f64>(), proptest::sample::select(vec![0.0, 1.0, f64::NAN, f64::MAX, 5e-324])]
+}
+
+proptest! {
+    #[test]
+    fn no_cells_upset_a_chart(
+        x in prop::collection::vec(number(), 0..9), y in prop::collection::vec(number(), 0..9),
+        values in prop::collection::vec(number(), 0..99), scales in [0..3usize, 0..3usize],
+        range in prop::option::of((number(), number())), name in ".{0,40}",
+    ) {
+        let axis = |scale| match scale {
+            0 => Axis::linear("x"),
+            1 => Axis::logarithmic("x"),
+            _ => Axis::categories("x", vec!["a".to_string(), "b".to_string()]),
+        };
+        let series = Series::new(name, Color::Gray, Marks::Cells(Cells { x, y, values }));
+        let mut chart = chart(axis(scales[0]), axis(scales[1]), vec![series]);
+        chart.x.range = range;
+        let svg = chart.to_svg("a");
+        elements(&svg);
+        for class in ["chart-axis", "chart-level-0", "chart-level-9"] {
+            prop_assert!(paths(&svg, class).iter().all(|path| !path.contains(['N', 'i'])));
+        }
+        let lines = chart.to_csv().lines().count();
+        let Marks::Cells(cells) = &chart.series[0].marks else { unreachable!() };
+        prop_assert!(lines > cells.values.len().min(cells.x.len() * cells.y.len()));
+    }
 }

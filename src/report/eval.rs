@@ -3,10 +3,14 @@
 use super::build::FitReport;
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::sureness::Sureness;
+use super::survey::{
+    EventReport, HistogramReport, LEVEL, QuantilesReport, conditions_text, events, events_text, histogram_text,
+    histograms, quantiles_table,
+};
 use super::table::{Align, Table, count, significant};
-use crate::eval::{CriticalValues, Sensitivities};
+use crate::eval::{Answer, Condition, CriticalValues, Question, Sampler, Sensitivities};
 use crate::spectrum::{ModeSummary, Output, Summary};
-use crate::statistics::{Interval, Moments};
+use crate::statistics::{Interval, Moments, Share};
 use crate::surrogate::{Quantile, Surrogate};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -21,12 +25,22 @@ pub struct EvalReport {
     pub source: &'static str,
     /// Number of samples.
     pub samples: u64,
+    /// Whether these are all samples that were asked for; false after an interruption.
+    pub complete: bool,
     /// Seed of the samples.
     pub seed: u64,
+    /// How samples are drawn.
+    pub sampler: &'static str,
+    /// Independent randomisations that the samples are divided among.
+    pub replicates: u32,
+    /// Inputs that are confined or fixed.
+    pub conditions: Vec<Condition>,
     /// Number of stable samples, max Re λ < 0.
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
+    /// Standard error of the share: from the spread of replicates, or of independent samples.
+    pub standard_error: f64,
     /// How sure that is.
     #[serde(flatten)]
     pub sureness: Sureness,
@@ -40,6 +54,12 @@ pub struct EvalReport {
     pub sensitivity: Option<SensitivityReport>,
     /// The critical value of an input, if asked for.
     pub critical: Option<CriticalReport>,
+    /// Other events that were counted.
+    pub events: Vec<EventReport>,
+    /// Histograms that were asked for.
+    pub histograms: Vec<HistogramReport>,
+    /// Quantiles, if asked for.
+    pub quantiles: Vec<QuantilesReport>,
     /// What to know before trusting a surrogate.
     pub warnings: Vec<String>,
     /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file; empty for a model.
@@ -123,30 +143,56 @@ pub struct QuantileReport {
 /// Components side by side in a table of Sobol' indices: what fits a terminal.
 const SOBOL_COLUMNS: usize = 4;
 
-/// Confidence level of the printed intervals.
-const LEVEL: f64 = 0.95;
+/// A surrogate, what was asked of it, and what it answers.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked<'a> {
+    /// The surrogate.
+    pub surrogate: &'a Surrogate,
+    /// The question.
+    pub question: &'a Question,
+    /// The answer.
+    pub answer: &'a Answer,
+    /// Wall-clock time of the samples.
+    pub elapsed_seconds: f64,
+}
 
 impl EvalReport {
-    /// The report of a surrogate's samples.
-    pub fn of_surrogate(
-        surrogate: &Surrogate,
-        summary: &Summary,
-        indices: &Sensitivities,
-        seed: u64,
-        elapsed_seconds: f64,
-    ) -> Self {
-        let name = &surrogate.provenance.study_name;
-        let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, seed, elapsed_seconds);
-        for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
-            component.analysis = Some(analysis);
+    /// The report of a surrogate's samples; `None` if there are none.
+    pub fn of_surrogate(asked: Asked<'_>, indices: Option<&Sensitivities>) -> Option<Self> {
+        let Asked { surrogate, question, answer, elapsed_seconds } = asked;
+        let cell = answer.cells.first()?;
+        let (name, summary) = (&surrogate.provenance.study_name, &cell.total.summary);
+        let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, question.seed, elapsed_seconds);
+        let is_whole = question.conditions.is_empty();
+        if is_whole {
+            for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
+                component.analysis = Some(analysis);
+            }
         }
-        let stable = summary.stable_proportion();
-        report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, report.sureness.interval);
-        report.sensitivity = Some(SensitivityReport::new(surrogate.inputs.names(), indices));
+        let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
+        report.complete = answer.is_complete;
+        report.sampler = question.sampler.name();
+        report.replicates = question.replicates;
+        report.conditions = question.conditions.clone();
+        report.standard_error = share.standard_error;
+        report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, share.interval);
+        report.sureness.replicates = cell.replicates.len() as u64;
+        if !is_whole {
+            report.sureness.confine();
+        }
+        let free = |name: &&str| !question.conditions.iter().any(|c| c.input == *name && c.lower == c.upper);
+        report.sensitivity = indices.map(|indices| {
+            let mut sensitivity = SensitivityReport::new(surrogate.inputs.names(), indices);
+            sensitivity.inputs.retain(|input| free(&input.input.as_str()));
+            sensitivity
+        });
+        report.events = events(question, cell);
+        (report.histograms, report.quantiles) = histograms(question, &answer.histograms);
         report.warnings = FitReport::warnings_of(surrogate);
+        report.warnings.extend(unbalanced(question));
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
-        report
+        Some(report)
     }
 
     /// Adds the distribution of the critical value of an input.
@@ -176,12 +222,19 @@ impl EvalReport {
             study: study.to_owned(),
             source,
             samples: stable.samples,
+            complete: true,
             seed,
+            sampler: Sampler::MonteCarlo.name(),
+            replicates: 1,
+            conditions: Vec::new(),
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
+            standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
             sureness: Sureness {
                 interval: stable.wilson(LEVEL),
                 samples: stable.samples,
+                replicates: 1,
+                is_confined: false,
                 surrogate_band: None,
                 estimated_error_percent: None,
                 of_modes_left_out: false,
@@ -200,6 +253,9 @@ impl EvalReport {
                 .collect(),
             sensitivity: None,
             critical: None,
+            events: Vec::new(),
+            histograms: Vec::new(),
+            quantiles: Vec::new(),
             warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
@@ -223,7 +279,7 @@ impl Statistics {
 }
 
 /// A rate as a count with two significant digits: 6 600 000.
-fn rounded(rate: f64) -> String {
+pub(super) fn rounded(rate: f64) -> String {
     let unit = 10f64.powf(rate.max(10.0).log10().floor() - 1.0);
     count(((rate / unit).round() * unit) as u64)
 }
@@ -270,6 +326,7 @@ impl fmt::Display for EvalReport {
             rounded(rate),
             self.seed
         )?;
+        self.write_circumstances(f)?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         let modes: Vec<String> = self.modes.iter().map(|mode| mode.mode.to_string()).collect();
         let judged_by = match self.source {
@@ -285,6 +342,7 @@ impl fmt::Display for EvalReport {
             }
             _ => write!(f, "{}", self.sureness)?,
         }
+        write!(f, "{}", events_text(&self.events))?;
         writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
         if let Some((low, high)) = self.central_residuals() {
             let [low, high] = [low, high].map(|value| significant(value, 3));
@@ -296,6 +354,10 @@ impl fmt::Display for EvalReport {
         writeln!(f, "\n{}", self.mode_table())?;
         write!(f, "{}", self.component_table())?;
         writeln!(f, "re in 1/s, im in rad/s")?;
+        if let Some(table) = quantiles_table(&self.quantiles) {
+            write!(f, "\n{table}")?;
+        }
+        self.histograms.iter().try_for_each(|histogram| write!(f, "\n{}", histogram_text(histogram)))?;
         if let Some(sensitivity) = &self.sensitivity {
             write!(f, "{sensitivity}")?;
         }
@@ -310,7 +372,41 @@ impl fmt::Display for EvalReport {
     }
 }
 
+/// Sobol' points are balanced in numbers that are powers of two.
+fn unbalanced(question: &Question) -> Option<String> {
+    let per_replicate = question.samples / u64::from(question.replicates.max(1));
+    if question.sampler != Sampler::Sobol || per_replicate.is_power_of_two() {
+        return None;
+    }
+    let nearest = per_replicate.checked_next_power_of_two()?.checked_mul(u64::from(question.replicates))?;
+    Some(format!(
+        "replicates of {} Sobol' points are less balanced than those of a power of two; use -n {nearest}",
+        count(per_replicate)
+    ))
+}
+
 impl EvalReport {
+    /// What is not plain about these samples.
+    fn write_circumstances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.complete {
+            writeln!(f, "  incomplete             interrupted before the last samples")?;
+        }
+        if self.replicates > 1 {
+            let points = count(self.samples / u64::from(self.replicates));
+            writeln!(
+                f,
+                "  sampler                {}, {} replicates of {points} points",
+                self.sampler, self.replicates
+            )?;
+        } else if self.sampler != Sampler::MonteCarlo.name() {
+            writeln!(f, "  sampler                {}", self.sampler)?;
+        }
+        if !self.conditions.is_empty() {
+            writeln!(f, "  where                  {}", conditions_text(&self.conditions))?;
+        }
+        Ok(())
+    }
+
     /// The residual quantiles at 2.5 and 97.5 %.
     fn central_residuals(&self) -> Option<(f64, f64)> {
         let at = |level: f64| self.max_re_residuals.iter().find(|quantile| quantile.level == level).map(|q| q.value);

@@ -14,6 +14,12 @@ pub struct Sureness {
     /// Number of these samples.
     #[serde(skip)]
     pub samples: u64,
+    /// Independent randomisations that the interval is made from; 1 if it is from the number of samples.
+    #[serde(skip)]
+    pub replicates: u64,
+    /// Whether the samples are from a part of the domain alone.
+    #[serde(skip)]
+    pub is_confined: bool,
     /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves open;
     /// null if unknown.
     pub surrogate_band: Option<Interval>,
@@ -50,11 +56,22 @@ impl Sureness {
         Self {
             interval,
             samples: stable.samples,
+            replicates: 1,
+            is_confined: false,
             surrogate_band: (!decision.max_re_residuals.is_empty()).then_some(band),
             estimated_error_percent: decision.proportion_error.map(|error| 100.0 * error),
             of_modes_left_out: is_of_modes_left_out(surrogate),
             verified_bound: verified_bound(surrogate),
         }
+    }
+}
+
+impl Sureness {
+    /// Takes back what is known of the whole domain only.
+    pub(super) fn confine(&mut self) {
+        self.is_confined = true;
+        self.estimated_error_percent = None;
+        self.verified_bound = None;
     }
 }
 
@@ -92,7 +109,10 @@ impl Sureness {
         let range = |interval: &Interval| format!("{} to {}", percent(interval.lower), percent(interval.upper));
         let level = |interval: &Interval| format!("{:.0} %", 100.0 * interval.level);
         let Self { interval, surrogate_band, verified_bound, .. } = self;
-        let sampling = format!("{}   {}, from {} samples", range(interval), level(interval), count(self.samples));
+        let sampling = match self.replicates {
+            0 | 1 => format!("{}   {}, from {} samples", range(interval), level(interval), count(self.samples)),
+            replicates => format!("{}   {}, from {replicates} replicates", range(interval), level(interval)),
+        };
         let band = match (surrogate_band, self.estimated_error_percent) {
             (None, None) => "unknown: no point could be left out".to_owned(),
             (None, Some(error)) => {
@@ -105,6 +125,7 @@ impl Sureness {
             }
         };
         let verified = match verified_bound {
+            None if self.is_confined => "none for a part of the domain".to_owned(),
             None => "none; `pcc certify` makes one from fresh model runs".to_owned(),
             Some(VerifiedBound { bound, samples, seed, certificates }) => {
                 let others =

@@ -137,3 +137,17 @@ pub fn count(number: u64) -> String {
     }
     grouped
 }
+/// A number as people write it, with six digits at most and no zeros after the last: for values that were chosen.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::report::plain;
+/// assert_eq!(plain(0.1 + 0.2), "0.3");
+/// assert_eq!((plain(15.2e6), plain(-1e-9)), ("15200000".to_owned(), "-1e-9".to_owned()));
+/// ```
+pub fn plain(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    if size != 0.0 && !(1e-4..1e9).contains(&size) { format!("{rounded:e}") } else { rounded.to_string() }
+}

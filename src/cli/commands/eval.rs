@@ -1,13 +1,21 @@
 //! `pcc eval`
 
-use super::super::arguments::Eval;
+use super::super::arguments::{Asked as AskedOptions, Eval, Pictures};
 use super::super::points::{Evaluated, PointsFile};
+use super::super::question::Shard;
 use super::super::{Context, Ending};
-use super::{PointsReport, interruptible, keep_inputs, read_surrogate};
-use crate::eval::{EvalError, Plan, critical_values, evaluate_points, monte_carlo, sensitivities};
-use crate::report::EvalReport;
+use super::{PointsReport, interruptible, keep_inputs, keep_unmarked_files, read_surrogate};
+use crate::artifact::{check_writable, save};
+use crate::eval::{
+    EvalError, Findings, Pilot, PilotError, Plan, Progress, Quantity, Question, Sampler, Survey, SurveyError,
+    critical_values_in, evaluate_points, sensitivities_in,
+};
+use crate::numerics::InstructionSet;
+use crate::part::{MARK, Part};
+use crate::progress::Interrupted;
+use crate::report::{Asked, EvalReport, PartReport, SweepReport, sweep_chart};
 use crate::surrogate::Surrogate;
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use std::path::Path;
 use std::time::Instant;
 
@@ -17,35 +25,208 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
         keep_inputs(out, &[points, &options.surrogate])?;
         context.print(&at_points(context, &surrogate, points, out, sampling.extrapolate)?)?;
+        return Ok(Ending::Done);
+    }
+    let instructions = instructions(options.instructions.as_deref())?;
+    let critical = options.critical.as_deref().map(|name| input_position(&surrogate, name)).transpose()?;
+    let question = question(&surrogate, &options.asked, sampling.samples.unwrap_or(0), sampling.seed)?;
+    if let Some(condition) =
+        question.conditions.iter().find(|condition| Some(&condition.input) == options.critical.as_ref())
+    {
+        bail!(
+            "--critical {0} --where {0}=…: the critical value is looked for in all of the domain; leave out one",
+            condition.input
+        );
+    }
+    let survey = Survey::new(&surrogate, &question, instructions)?;
+    check_pictures(&options.pictures, &question, &[&options.surrogate])?;
+    if let Some(file) = &options.part {
+        return write_part(context, &survey, &surrogate, &question, options.shard, file, &options.surrogate);
+    }
+    let start = Instant::now();
+    let findings =
+        survey.run(0..survey.layout().chunks(), &context.terminal).map_err(|error| failed(error, &surrogate))?;
+    let (Progress::Complete(found) | Progress::Interrupted(found)) = &findings;
+    let answer = found.answer(survey.layout());
+    let elapsed_seconds = start.elapsed().as_secs_f64();
+    let asked = Asked { surrogate: &surrogate, question: &question, answer: &answer, elapsed_seconds };
+    present(context, asked, &survey, critical, &options.pictures)
+}
+
+/// The plain question: random samples of the whole domain.
+pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
+    let question = Question::plain(samples, seed);
+    let survey = Survey::new(surrogate, &question, InstructionSet::best())?;
+    let start = Instant::now();
+    let findings =
+        survey.run(0..survey.layout().chunks(), &context.terminal).map_err(|error| failed(error, surrogate))?;
+    let Progress::Complete(findings) = findings else { return Err(Interrupted.into()) };
+    let answer = findings.answer(survey.layout());
+    let elapsed_seconds = start.elapsed().as_secs_f64();
+    report(context, Asked { surrogate, question: &question, answer: &answer, elapsed_seconds }, &survey, None)
+}
+
+/// Prints an answer, and writes its pictures.
+pub(super) fn present(
+    context: &Context,
+    asked: Asked<'_>,
+    survey: &Survey<'_>,
+    critical: Option<usize>,
+    pictures: &Pictures,
+) -> anyhow::Result<Ending> {
+    let Asked { surrogate, question, answer, elapsed_seconds } = asked;
+    if answer.cells.is_empty() {
+        return Err(Interrupted.into());
+    }
+    if question.sweeps.is_empty() {
+        context.print(&report(context, asked, survey, critical)?)?;
     } else {
-        let input = options.critical.as_deref().map(|name| input_position(&surrogate, name)).transpose()?;
-        let samples = sampling.samples.unwrap_or(0);
-        let mut report = sample(context, &surrogate, samples, sampling.seed)?;
-        if let Some(input) = input {
-            let found = critical_values(&surrogate, input, samples, sampling.seed, &context.terminal)
-                .map_err(|error| interrupted(error, &surrogate))?;
-            report.add_critical_values(&surrogate, input, &found);
+        let report = SweepReport::new(surrogate, question, answer, elapsed_seconds);
+        if report.complete {
+            save_pictures(&report, pictures)?;
         }
         context.print(&report)?;
     }
+    Ok(if answer.is_complete { Ending::Done } else { Ending::Interrupted })
+}
+
+/// Samples of the surrogate whose indices are estimated by pick-freeze: they cost r + 2 evaluations each, and their intervals are
+/// narrow enough.
+const SENSITIVITY_SAMPLES: u64 = 16_384;
+
+fn report(
+    context: &Context,
+    asked: Asked<'_>,
+    survey: &Survey<'_>,
+    critical: Option<usize>,
+) -> anyhow::Result<EvalReport> {
+    let Asked { surrogate, question, answer, .. } = asked;
+    let (region, seed) = (&survey.regions()[0], question.seed);
+    let failed = |error| failed(error, surrogate);
+    let mut indices = None;
+    if answer.is_complete {
+        let base = question.samples.min(SENSITIVITY_SAMPLES);
+        indices = Some(sensitivities_in(surrogate, region, base, seed, &context.terminal).map_err(failed)?);
+    }
+    let mut report = EvalReport::of_surrogate(asked, indices.as_ref()).ok_or(Interrupted)?;
+    if let Some(input) = critical.filter(|_| answer.is_complete) {
+        let found =
+            critical_values_in(surrogate, region, input, question.samples, seed, &context.terminal).map_err(failed)?;
+        report.add_critical_values(surrogate, input, &found);
+    }
+    Ok(report)
+}
+
+/// What is asked, in numbers.
+fn question(surrogate: &Surrogate, asked: &AskedOptions, samples: u64, seed: u64) -> anyhow::Result<Question> {
+    let sampler = Sampler::from(asked.sampler);
+    let mut question = Question {
+        sampler,
+        replicates: asked.replicates.unwrap_or(sampler.default_replicates()),
+        conditions: asked.conditions.clone(),
+        sweeps: asked.sweep.clone(),
+        events: asked.events.clone(),
+        quantile_levels: asked.quantiles.clone(),
+        ..Question::plain(samples, seed)
+    };
+    if asked.histogram.is_empty() && asked.quantiles.is_empty() {
+        return Ok(question);
+    }
+    let name = &surrogate.provenance.study_name;
+    let pilot = Pilot::new(surrogate, seed, &question.conditions).map_err(|error| match error {
+        PilotError::Survey(error) => anyhow::Error::from(error),
+        PilotError::Eval(error) => anyhow::Error::from(error).context(name.clone()),
+    })?;
+    for request in &asked.histogram {
+        let quantity = Quantity::named(&request.quantity, surrogate)
+            .ok_or_else(|| SurveyError::unknown_quantity(&request.quantity, surrogate))?;
+        let mut bins = pilot.bins(quantity, &request.quantity);
+        if let Some((lower, upper, count)) = request.bins {
+            (bins.lower, bins.upper, bins.bins) = (lower, upper, count);
+        }
+        question.histograms.push(bins);
+    }
+    if !asked.quantiles.is_empty() {
+        let of_modes =
+            Quantity::all(surrogate).into_iter().filter(|quantity| !matches!(quantity, Quantity::Component(_)));
+        question.quantile_bins =
+            of_modes.map(|quantity| pilot.fine_bins(quantity, &quantity.name(surrogate))).collect();
+    }
+    Ok(question)
+}
+
+fn instructions(name: Option<&str>) -> anyhow::Result<InstructionSet> {
+    let Some(name) = name else { return Ok(InstructionSet::best()) };
+    InstructionSet::named(name).with_context(|| {
+        let known: Vec<&str> = InstructionSet::available().iter().map(|set| set.name()).collect();
+        format!("--instructions {name}: this processor has {}", known.join(", "))
+    })
+}
+
+/// Evaluates one shard, and keeps what was found in a file.
+fn write_part(
+    context: &Context,
+    survey: &Survey<'_>,
+    surrogate: &Surrogate,
+    question: &Question,
+    shard: Option<Shard>,
+    file: &Path,
+    input: &Path,
+) -> anyhow::Result<Ending> {
+    keep_inputs(file, &[input])?;
+    keep_unmarked_files(file, MARK)?;
+    check_writable(file)?;
+    let shard = shard.unwrap_or(Shard { number: 0, of: 1 });
+    let start = Instant::now();
+    let chunks = survey.layout().shard(shard.number, shard.of);
+    let findings = survey.run(chunks, &context.terminal).map_err(|error| failed(error, surrogate))?;
+    let Progress::Complete(findings) = findings else { return Err(Interrupted.into()) };
+    let samples = survey.layout().samples_in(&findings.chunks());
+    let stable = stable(&findings);
+    let part = Part { surrogate: surrogate.clone(), question: question.clone(), findings };
+    save(file, &part.to_bytes()?)?;
+    context.print(&PartReport {
+        file: file.display().to_string(),
+        shard: shard.number,
+        shards: shard.of,
+        samples,
+        stable_samples: stable,
+        elapsed_seconds: start.elapsed().as_secs_f64(),
+    })?;
     Ok(Ending::Done)
 }
 
-/// Samples of the surrogate whose indices are estimated by pick-freeze: beyond, their intervals are narrow enough.
-const SENSITIVITY_SAMPLES: u64 = 50_000;
-
-pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
-    let start = Instant::now();
-    let summary =
-        monte_carlo(surrogate, samples, seed, &context.terminal).map_err(|error| interrupted(error, surrogate))?;
-    let elapsed = start.elapsed().as_secs_f64();
-    let base = samples.min(SENSITIVITY_SAMPLES);
-    let indices =
-        sensitivities(surrogate, base, seed, &context.terminal).map_err(|error| interrupted(error, surrogate))?;
-    Ok(EvalReport::of_surrogate(surrogate, &summary, &indices, seed, elapsed))
+pub(super) fn stable(findings: &Findings) -> u64 {
+    findings.total().map_or(0, |tally| tally.summary.stable)
 }
 
-fn interrupted(error: EvalError, surrogate: &Surrogate) -> anyhow::Error {
+/// Refuses pictures that nothing would be drawn in, and files that must not be replaced.
+pub(super) fn check_pictures(pictures: &Pictures, question: &Question, inputs: &[&Path]) -> anyhow::Result<()> {
+    for (option, file) in [("--table", &pictures.table), ("--chart", &pictures.chart)] {
+        let Some(file) = file else { continue };
+        if question.sweeps.is_empty() {
+            bail!("{option}: there is no sweep to write; ask for one with --sweep INPUT=FROM:TO:POINTS");
+        }
+        keep_inputs(file, inputs)?;
+        check_writable(file)?;
+    }
+    if pictures.chart.is_some() && question.sweeps.len() > 2 {
+        bail!("--chart: {} sweeps cannot be drawn; use one or two, or --table", question.sweeps.len());
+    }
+    Ok(())
+}
+
+fn save_pictures(report: &SweepReport, pictures: &Pictures) -> anyhow::Result<()> {
+    if let Some(file) = &pictures.table {
+        save(file, &report.to_csv()?)?;
+    }
+    if let Some(file) = &pictures.chart {
+        save(file, sweep_chart(report).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn failed(error: EvalError, surrogate: &Surrogate) -> anyhow::Error {
     interruptible(error.clone(), error.is_interruption(), &surrogate.provenance.study_name)
 }
 

@@ -1,0 +1,151 @@
+//! What a survey finds, and how parts of it are put together.
+
+use super::histogram::Histogram;
+use super::layout::Layout;
+use super::tally::Tally;
+use crate::statistics::{Forest, Merge, Proportion, Share};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// What was found in a range of chunks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Findings {
+    /// The first chunk.
+    first: u64,
+    /// The chunk after the last.
+    end: u64,
+    /// One per series that the range has chunks of.
+    series: Vec<Forest<Tally>>,
+    /// One per histogram of the question, those for quantiles last.
+    histograms: Vec<Histogram>,
+}
+
+impl Findings {
+    /// Nothing yet, from chunk `first` on.
+    pub(super) fn new(first: u64) -> Self {
+        Self { first, end: first, series: Vec::new(), histograms: Vec::new() }
+    }
+
+    /// The chunks it is about.
+    pub fn chunks(&self) -> Range<u64> {
+        self.first..self.end
+    }
+
+    pub(super) fn push(&mut self, tally: Tally, layout: &Layout) {
+        let inside = self.end % layout.chunks_per_series();
+        if inside == 0 || self.series.is_empty() {
+            self.series.push(Forest::new(inside));
+        }
+        if let Some(forest) = self.series.last_mut() {
+            forest.push(tally);
+        }
+        self.end += 1;
+    }
+
+    pub(super) fn set_histograms(&mut self, histograms: Vec<Histogram>) {
+        self.histograms = histograms;
+    }
+
+    /// Adds what was found in the chunks that follow; nothing changes, and the answer is false, if `next` begins elsewhere.
+    pub fn append(&mut self, next: Self, layout: &Layout) -> bool {
+        if next.first != self.end {
+            return false;
+        }
+        let mut series = next.series.into_iter();
+        if !next.first.is_multiple_of(layout.chunks_per_series())
+            && let Some(own) = self.series.last_mut()
+            && let Some(continued) = series.next()
+        {
+            own.append(continued);
+        }
+        self.series.extend(series);
+        self.end = next.end;
+        if self.histograms.is_empty() {
+            self.histograms = next.histograms;
+        } else {
+            self.histograms.iter_mut().zip(&next.histograms).for_each(|(own, added)| own.merge(added));
+        }
+        true
+    }
+
+    /// Whether this could have been found under such a layout: series that are complete but for the first and the last, with as many
+    /// components, modes, events and bins. What [`super::Survey::run`] finds always is; what a file says need not be.
+    pub fn fits(&self, layout: &Layout) -> bool {
+        let per_series = layout.chunks_per_series();
+        if self.first > self.end || self.end > layout.chunks() {
+            return false;
+        }
+        let series = self.first / per_series..self.end.div_ceil(per_series);
+        let count = if self.first == self.end { 0 } else { series.end - series.start };
+        let ranges = series.zip(&self.series).all(|(number, forest)| {
+            let first = self.first.max(number * per_series) - number * per_series;
+            let end = self.end.min((number + 1) * per_series) - number * per_series;
+            forest.is_consistent() && forest.first() == first && forest.end() == end
+        });
+        let tallies = self.series.iter().flat_map(Forest::values).all(|tally| layout.fits(tally));
+        let histograms = self.histograms.iter().map(|histogram| histogram.counts.len());
+        self.series.len() as u64 == count && ranges && tallies && histograms.eq(layout.bins.iter().copied())
+    }
+
+    /// All samples together, series after series; `None` without samples.
+    pub fn total(&self) -> Option<Tally> {
+        total(self.series.iter().filter_map(Forest::total))
+    }
+
+    /// What is said of every point of the sweeps that is complete, of the one point without sweeps in any case.
+    pub fn answer(&self, layout: &Layout) -> Answer {
+        let is_complete = self.chunks() == (0..layout.chunks());
+        let is_whole = |forest: &Forest<Tally>| forest.first() == 0 && forest.end() == layout.chunks_per_series();
+        let replicates = layout.replicates as usize;
+        let cells = self.series.chunks(replicates).filter_map(|series| {
+            let whole: Vec<Tally> = series.iter().filter(|forest| is_whole(forest)).filter_map(Forest::total).collect();
+            if layout.is_sweep && whole.len() < replicates {
+                return None;
+            }
+            // Of replicates that can be compared with others, or of all there is.
+            if whole.len() > 1 {
+                return Some(Cell { total: total(whole.iter().cloned())?, replicates: whole });
+            }
+            let all: Vec<Tally> = series.iter().filter_map(Forest::total).collect();
+            let total = total(all.into_iter())?;
+            Some(Cell { replicates: vec![total.clone()], total })
+        });
+        let histograms = if is_complete { self.histograms.clone() } else { Vec::new() };
+        Answer { is_complete, cells: cells.collect(), histograms }
+    }
+}
+
+fn total(mut tallies: impl Iterator<Item = Tally>) -> Option<Tally> {
+    let mut total = tallies.next()?;
+    tallies.for_each(|next| total.merge(&next));
+    Some(total)
+}
+
+/// What was found, ready to be reported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Whether all samples were evaluated.
+    pub is_complete: bool,
+    /// One for every point of the sweeps, the last sweep varying fastest; without sweeps one.
+    pub cells: Vec<Cell>,
+    /// One per histogram of the question, those for quantiles last; none if not complete.
+    pub histograms: Vec<Histogram>,
+}
+
+/// The samples of one point of the sweeps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// All samples.
+    pub total: Tally,
+    /// Each randomisation.
+    pub replicates: Vec<Tally>,
+}
+
+impl Cell {
+    /// The share of samples that `hits` counts, with its interval at `level`.
+    pub fn share(&self, level: f64, hits: impl Fn(&Tally) -> u64) -> Share {
+        let proportion = |tally: &Tally| Proportion { hits: hits(tally), samples: tally.summary.samples() };
+        Share::of_replicates(&self.replicates.iter().map(proportion).collect::<Vec<_>>(), level)
+    }
+}

@@ -1,0 +1,382 @@
+//! Parts of an evaluation, kept in files until all are there.
+//!
+//! A part says what was found in a range of chunks of a question's samples, and holds the question and the surrogate with
+//! it: parts can be computed anywhere, in any order, and [`merge`] needs nothing but the parts. Parts of the same question are merged
+//! to the same bytes, whatever the samples were divided into.
+//!
+//! # File format 1
+//!
+//! Two lines of JSON. The first is `{"pcc_part": 1, "length": …, "sha256": …}` with length in bytes and SHA-256 of the second, which
+//! holds the surrogate as in a JSON surrogate file, the question and the findings.
+
+use crate::artifact::{self, Format, ReadError, WriteError};
+use crate::digest::sha256;
+use crate::eval::{Findings, Question, Survey, SurveyError};
+use crate::numerics::InstructionSet;
+use crate::surrogate::Surrogate;
+use serde::{Deserialize, Serialize};
+use std::fs::File;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+use thiserror::Error;
+
+/// Version of the file format.
+const VERSION: u64 = 1;
+
+/// What every part file starts with.
+pub const MARK: &str = "{\"pcc_part\":";
+
+/// Bytes of a part file that are read at most: a million points of sweeps take a quarter of that.
+const LARGEST: u64 = 1 << 30;
+
+/// Bytes that the first line has at most.
+const LONGEST_HEADER: usize = 256;
+
+/// A range of an evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// What was evaluated.
+    pub surrogate: Surrogate,
+    /// What was asked.
+    pub question: Question,
+    /// What was found.
+    pub findings: Findings,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    pcc_part: u64,
+    length: u64,
+    sha256: String,
+}
+
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Body {
+    surrogate: String,
+    question: Question,
+    findings: Findings,
+}
+
+/// Why a part cannot be read or written, or parts not be merged.
+#[derive(Debug, Error)]
+pub enum PartError {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(String),
+    /// Something else.
+    #[error("is no part of an evaluation; give files that pcc eval --part has written")]
+    NotAPart,
+    /// Larger than any part.
+    #[error("has more than {most} bytes, which no part has")]
+    TooLarge {
+        /// The limit.
+        most: u64,
+    },
+    /// Written by another version.
+    #[error("has part format {found}, and this pcc reads format {VERSION}; evaluate and merge with the same version")]
+    Version {
+        /// Its version.
+        found: u64,
+    },
+    /// Shorter or longer than it says.
+    #[error(
+        "has {found} bytes after its first line instead of {expected}: it was cut off or changed; evaluate the shard again"
+    )]
+    Length {
+        /// Bytes there are.
+        found: u64,
+        /// Bytes there should be.
+        expected: u64,
+    },
+    /// Changed.
+    #[error("does not match its checksum: it was changed; evaluate the shard again")]
+    Checksum,
+    /// The checksum is right, the content is not.
+    #[error("holds something else than an evaluation: {0}; evaluate and merge with the same version of pcc")]
+    Content(String),
+    /// The surrogate inside.
+    #[error("holds a surrogate that cannot be read: {0}")]
+    Surrogate(#[from] ReadError),
+    /// The question does not fit the surrogate.
+    #[error("holds a question that does not fit its surrogate: {0}")]
+    Question(#[from] SurveyError),
+    /// The surrogate cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Moments beyond double precision.
+    #[error("some moment is not a finite number, and cannot be kept in a file")]
+    NotFinite,
+    /// Nothing to merge.
+    #[error("there are no parts; give the files of all shards")]
+    Empty,
+    /// Parts of different evaluations.
+    #[error("{second} is of another {what} than {first}; merge parts of one evaluation")]
+    Different {
+        /// What differs.
+        what: &'static str,
+        /// A part.
+        first: String,
+        /// A part that differs from it.
+        second: String,
+    },
+    /// Samples that no part has.
+    #[error("samples of chunks {} to {} of {chunks} are in no part; evaluate the missing shards", missing.start, missing.end - 1)]
+    Gap {
+        /// The missing chunks.
+        missing: Range<u64>,
+        /// Number of all chunks.
+        chunks: u64,
+    },
+    /// Samples that two parts have.
+    #[error("{first} and {second} have samples in common; give every shard once")]
+    Overlap {
+        /// A part.
+        first: String,
+        /// The other.
+        second: String,
+    },
+}
+
+impl Part {
+    /// The content of the part's file.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError::NotFinite`], [`PartError::Write`].
+    pub fn to_bytes(&self) -> Result<Vec<u8>, PartError> {
+        let surrogate = String::from_utf8_lossy(&artifact::encode(&self.surrogate, Format::Json)?).into_owned();
+        let body = Body { surrogate, question: self.question.clone(), findings: self.findings.clone() };
+        let text = serde_json::to_string(&body).map_err(|_| PartError::NotFinite)?;
+        // NaN and infinity are written as null, which is not read as a number.
+        if serde_json::from_str::<Body>(&text).ok() != Some(body) {
+            return Err(PartError::NotFinite);
+        }
+        let header = Header { pcc_part: VERSION, length: text.len() as u64, sha256: sha256(text.as_bytes()) };
+        let header = serde_json::to_string(&header).map_err(|_| PartError::NotFinite)?;
+        Ok(format!("{header}\n{text}").into_bytes())
+    }
+
+    /// Reads and checks a part's file.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn read(path: &Path) -> Result<Self, PartError> {
+        let mut bytes = Vec::new();
+        let file = File::open(path).map_err(|error| PartError::Unreadable(error.to_string()))?;
+        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| PartError::Unreadable(error.to_string()))?;
+        Self::from_bytes(&bytes)
+    }
+
+    /// Parses and checks the content of a part's file.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, PartError> {
+        if bytes.len() as u64 > LARGEST {
+            return Err(PartError::TooLarge { most: LARGEST });
+        }
+        let body = checked_body(bytes)?;
+        let Body { surrogate, question, findings } =
+            serde_json::from_slice(body).map_err(|error| PartError::Content(error.to_string()))?;
+        let part = Self { surrogate: artifact::decode(surrogate.as_bytes())?.surrogate, question, findings };
+        if !part.findings.fits(part.survey()?.layout()) {
+            return Err(PartError::Content("counts that do not fit the question".to_owned()));
+        }
+        Ok(part)
+    }
+
+    /// The evaluation it is a part of.
+    ///
+    /// # Errors
+    ///
+    /// [`SurveyError`] if the question does not fit the surrogate.
+    pub fn survey(&self) -> Result<Survey<'_>, SurveyError> {
+        Survey::new(&self.surrogate, &self.question, InstructionSet::best())
+    }
+
+    /// Whether it is all of the evaluation.
+    pub fn is_complete(&self) -> bool {
+        self.survey().is_ok_and(|survey| self.findings.chunks() == (0..survey.layout().chunks()))
+    }
+}
+
+/// The second line, if the first speaks the truth about it.
+fn checked_body(bytes: &[u8]) -> Result<&[u8], PartError> {
+    if !bytes.starts_with(MARK.as_bytes()) {
+        return Err(PartError::NotAPart);
+    }
+    let end = bytes.iter().take(LONGEST_HEADER).position(|&byte| byte == b'\n').ok_or(PartError::NotAPart)?;
+    let (header, body) = (&bytes[..end], &bytes[end + 1..]);
+    let version = serde_json::from_slice::<serde_json::Value>(header).map_err(|_| PartError::NotAPart)?;
+    match version["pcc_part"].as_u64() {
+        Some(VERSION) => {}
+        Some(found) => return Err(PartError::Version { found }),
+        None => return Err(PartError::NotAPart),
+    }
+    let header: Header = serde_json::from_slice(header).map_err(|_| PartError::NotAPart)?;
+    if body.len() as u64 != header.length {
+        return Err(PartError::Length { found: body.len() as u64, expected: header.length });
+    }
+    if sha256(body) != header.sha256 {
+        return Err(PartError::Checksum);
+    }
+    Ok(body)
+}
+
+/// Puts parts together, given with names for messages, in any order.
+///
+/// # Errors
+///
+/// [`PartError::Empty`], [`PartError::Different`], [`PartError::Overlap`], and [`PartError::Gap`] between parts. Whether the first and the
+/// last chunks are there is for [`Part::is_complete`] to say.
+pub fn merge(mut parts: Vec<(String, Part)>) -> Result<Part, PartError> {
+    parts.sort_by_key(|(_, part)| (part.findings.chunks().start, part.findings.chunks().end));
+    let mut parts = parts.into_iter();
+    let Some((first_name, mut whole)) = parts.next() else { return Err(PartError::Empty) };
+    let (surrogate, question) = (whole.surrogate.clone(), whole.question.clone());
+    let survey = Survey::new(&surrogate, &question, InstructionSet::best())?;
+    let mut before = first_name.clone();
+    for (name, part) in parts {
+        let different = |what| PartError::Different { what, first: first_name.clone(), second: name.clone() };
+        if part.surrogate != surrogate {
+            return Err(different("surrogate"));
+        }
+        if part.question.seed != question.seed {
+            return Err(different("seed"));
+        }
+        if part.question != question {
+            return Err(different("question"));
+        }
+        let (end, next) = (whole.findings.chunks().end, part.findings.chunks());
+        if next.start > end {
+            return Err(PartError::Gap { missing: end..next.start, chunks: survey.layout().chunks() });
+        }
+        if next.start < end || !whole.findings.append(part.findings, survey.layout()) {
+            return Err(PartError::Overlap { first: before, second: name });
+        }
+        before = name;
+    }
+    Ok(whole)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eval::{Bins, Event, Progress, Sampler, Sweep};
+    use crate::progress::Silent;
+
+    fn surrogate() -> Surrogate {
+        artifact::decode(include_bytes!("../surrogates/clutch-r2.pcc")).unwrap().surrogate
+    }
+
+    fn rich_question() -> Question {
+        let bins = |quantity: &str, bins| Bins { quantity: quantity.to_owned(), lower: -20.0, upper: 20.0, bins };
+        Question {
+            events: vec![Event { quantity: "max_re".to_owned(), below: true, threshold: -1.0 }],
+            histograms: vec![bins("max_re", 40)],
+            quantile_levels: vec![0.5],
+            quantile_bins: vec![bins("re_3", 1000)],
+            ..Question::plain(100_003, 7)
+        }
+    }
+
+    fn part(question: &Question, shard: u64, shards: u64) -> Part {
+        let surrogate = surrogate();
+        let survey = Survey::new(&surrogate, question, InstructionSet::best()).unwrap();
+        match survey.run(survey.layout().shard(shard, shards), &Silent).unwrap() {
+            Progress::Complete(findings) => Part { surrogate: surrogate.clone(), question: question.clone(), findings },
+            Progress::Interrupted(_) => panic!("nobody interrupts"),
+        }
+    }
+
+    fn parts(question: &Question, shards: u64) -> Vec<(String, Part)> {
+        (0..shards).map(|shard| (format!("part {shard}"), part(question, shard, shards))).collect()
+    }
+
+    #[test]
+    fn any_number_of_shards_gives_the_same_bytes() {
+        let sobol = Question { sampler: Sampler::Sobol, replicates: 4, ..Question::plain(32_768, 3) };
+        let sweep = Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 5 };
+        let swept = Question { sweeps: vec![sweep], ..Question::plain(9000, 1) };
+        for question in [rich_question(), sobol, swept] {
+            let whole = part(&question, 0, 1);
+            assert!(whole.is_complete());
+            for shards in [1, 3, 17, 60] {
+                let mut parts = parts(&question, shards);
+                parts.rotate_left(shards as usize / 2);
+                let merged = merge(parts).unwrap();
+                assert_eq!(merged.to_bytes().unwrap(), whole.to_bytes().unwrap(), "{shards} shards");
+            }
+        }
+    }
+
+    #[test]
+    fn parts_come_back_from_their_bytes() {
+        let part = part(&rich_question(), 1, 3);
+        assert_eq!(Part::from_bytes(&part.to_bytes().unwrap()).unwrap(), part);
+        assert!(!part.is_complete());
+    }
+
+    #[test]
+    fn gaps_overlaps_and_other_evaluations_are_refused() {
+        let question = rich_question();
+        let all = parts(&question, 5);
+        let some = |numbers: &[usize]| merge(numbers.iter().map(|&number| all[number].clone()).collect());
+        assert!(matches!(some(&[0, 1, 3, 4]), Err(PartError::Gap { missing, .. }) if missing == (10..15)));
+        assert!(matches!(some(&[0, 1, 1, 2]), Err(PartError::Overlap { .. })));
+        assert!(matches!(some(&[]), Err(PartError::Empty)));
+        assert!(some(&[2, 1, 3]).is_ok_and(|part| !part.is_complete()));
+        let other = |question: Question, what: &str| {
+            let result = merge(vec![all[0].clone(), (what.to_owned(), part(&question, 1, 5))]);
+            assert!(matches!(result, Err(PartError::Different { what: found, .. }) if found == what));
+        };
+        other(Question { seed: 8, ..question.clone() }, "seed");
+        other(Question { samples: 100_004, ..question.clone() }, "question");
+        let mut foreign = all[1].clone();
+        foreign.1.surrogate.provenance.study_name.push('x');
+        assert!(matches!(merge(vec![all[0].clone(), foreign]), Err(PartError::Different { what: "surrogate", .. })));
+    }
+
+    #[test]
+    fn damaged_files_are_refused() {
+        let bytes = part(&rich_question(), 0, 2).to_bytes().unwrap();
+        for length in [0, 5, 30, 100, 200, bytes.len() / 2, bytes.len() - 1] {
+            assert!(Part::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
+        }
+        for place in (0..bytes.len()).step_by(997) {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= 1;
+            assert!(Part::from_bytes(&damaged).is_err(), "byte {place}");
+        }
+        let text = String::from_utf8(bytes).unwrap();
+        let newer = text.replacen("\"pcc_part\":1", "\"pcc_part\":2", 1);
+        assert!(matches!(Part::from_bytes(newer.as_bytes()), Err(PartError::Version { found: 2 })));
+        assert!(matches!(Part::from_bytes(b"mu,k_p\n0.1,2"), Err(PartError::NotAPart)));
+    }
+
+    /// With a right checksum, so that it is the content that is judged.
+    #[test]
+    fn counts_that_do_not_fit_the_question_are_refused() {
+        let bytes = part(&rich_question(), 0, 2).to_bytes().unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let body = text.split_once('\n').unwrap().1;
+        let refused = |from: &str, to: &str| {
+            assert!(body.contains(from), "{from}");
+            let body = body.replacen(from, to, 1);
+            let header = Header { pcc_part: 1, length: body.len() as u64, sha256: sha256(body.as_bytes()) };
+            let file = format!("{}\n{body}", serde_json::to_string(&header).unwrap());
+            assert!(Part::from_bytes(file.as_bytes()).is_err(), "{from} became {to}");
+        };
+        refused("\"samples\":100003", "\"samples\":5000");
+        refused("\"first\":0,\"end\":12", "\"first\":0,\"end\":13");
+        refused("\"level\":3", "\"level\":2");
+        refused("\"events\":[{", "\"events\":[],\"was\":[{");
+        refused("\"quantity\":\"re_3\"", "\"quantity\":\"re_9\"");
+        refused("\"bins\":40", "\"bins\":41");
+    }
+}
