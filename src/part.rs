@@ -123,8 +123,14 @@ pub enum PartError {
         second: String,
     },
     /// Samples that no part has.
-    #[error("samples of chunks {} to {} of {chunks} are in no part; evaluate the missing shards", missing.start, missing.end - 1)]
+    #[error(
+        "samples {place} are missing, chunks {} to {} of {chunks}; give the parts of all shards",
+        missing.start + 1,
+        missing.end
+    )]
     Gap {
+        /// Between which parts.
+        place: String,
         /// The missing chunks.
         missing: Range<u64>,
         /// Number of all chunks.
@@ -254,7 +260,8 @@ pub fn merge(mut parts: Vec<(String, Part)>) -> Result<Part, PartError> {
         }
         let (end, next) = (whole.findings.chunks().end, part.findings.chunks());
         if next.start > end {
-            return Err(PartError::Gap { missing: end..next.start, chunks: survey.layout().chunks() });
+            let place = format!("between {before} and {name}");
+            return Err(PartError::Gap { place, missing: end..next.start, chunks: survey.layout().chunks() });
         }
         if next.start < end || !whole.findings.append(part.findings, survey.layout()) {
             return Err(PartError::Overlap { first: before, second: name });

@@ -88,10 +88,17 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Value number `number`, from 0; the last is exactly `to`.
+    /// Value number `number`, from 0, to 15 digits, which is how people write it; the last is exactly `to`.
     pub fn value(&self, number: u32) -> f64 {
         let last = self.points.saturating_sub(1).max(1);
-        if number >= last { self.to } else { self.from + (self.to - self.from) * (f64::from(number) / f64::from(last)) }
+        match number {
+            0 => self.from,
+            _ if number >= last => self.to,
+            _ => {
+                let value = self.from + (self.to - self.from) * (f64::from(number) / f64::from(last));
+                format!("{value:.14e}").parse().unwrap_or(value)
+            }
+        }
     }
 }
 
@@ -110,7 +117,7 @@ pub struct Event {
 impl Event {
     /// As typed: `max_re<-1`.
     pub fn text(&self) -> String {
-        format!("{}{}{:?}", self.quantity, if self.below { '<' } else { '>' }, self.threshold)
+        format!("{}{}{}", self.quantity, if self.below { '<' } else { '>' }, self.threshold)
     }
 }
 

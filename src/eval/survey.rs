@@ -241,7 +241,10 @@ fn sources(surrogate: &Surrogate, question: &Question) -> Result<(Vec<Source>, u
         return Err(SurveyError::ReplicatesOfMonteCarlo);
     }
     if !samples.is_multiple_of(u64::from(replicates)) {
-        return Err(SurveyError::NotDivisible { samples, replicates: u64::from(replicates) });
+        let replicates = u64::from(replicates);
+        let each = samples.div_ceil(replicates);
+        let each = if sampler == Sampler::Sobol { each.checked_next_power_of_two().unwrap_or(each) } else { each };
+        return Err(SurveyError::NotDivisible { samples, replicates, better: each.saturating_mul(replicates) });
     }
     let (samples, dimension) = (samples / u64::from(replicates), surrogate.inputs.dimension());
     let too_small = || SurveyError::SamplerTooSmall { sampler, samples, dimension };

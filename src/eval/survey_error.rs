@@ -16,15 +16,14 @@ pub enum SurveyError {
     #[error("Monte Carlo needs no replicates; leave them out, or choose the sampler sobol or latin-hypercube")]
     ReplicatesOfMonteCarlo,
     /// Replicates of different size.
-    #[error(
-        "{samples} samples cannot be divided among {replicates} replicates; use a multiple, {} for example",
-        samples.saturating_add(replicates - 1) / replicates * replicates
-    )]
+    #[error("{samples} samples cannot be divided among {replicates} replicates; use a multiple, {better} for example")]
     NotDivisible {
         /// Number of samples.
         samples: u64,
         /// Number of replicates.
         replicates: u64,
+        /// A number that can be, and that suits the sampler.
+        better: u64,
     },
     /// More points or dimensions than the sampler has.
     #[error(

@@ -43,8 +43,11 @@ pub(in super::super) fn merge(context: &Context, options: &Merge) -> anyhow::Res
     let survey = whole.survey()?;
     let (found, all) = (whole.findings.chunks(), survey.layout().chunks());
     if found != (0..all) {
-        let missing = if found.start > 0 { 0..found.start } else { found.end..all };
-        return Err(PartError::Gap { missing, chunks: all }.into());
+        let (place, missing) = match found.start {
+            0 => ("after those of all parts", found.end..all),
+            start => ("before those of all parts", 0..start),
+        };
+        return Err(PartError::Gap { place: place.to_owned(), missing, chunks: all }.into());
     }
     check_pictures(&options.pictures, &whole.question, &files)?;
     let answer = whole.findings.answer(survey.layout());
