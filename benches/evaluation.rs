@@ -107,7 +107,7 @@ fn measure(surrogate: &Surrogate, instructions: InstructionSet) -> Parts {
         best.kernel = best.kernel.min(per_sample(kernel, count));
         let roots = seconds(|| (0..blocks).for_each(|_| plan.evaluate(0, black_box(&mut workspace))));
         best.with_roots = best.with_roots.min(per_sample(roots, count));
-        let random = seconds(|| draw(instructions, workspace.points_mut(), blocks));
+        let random = seconds(|| instructions.run(Drawing { points: workspace.points_mut(), blocks }));
         best.random_numbers = best.random_numbers.min(per_sample(random, count));
         let whole = on_threads(1, || seconds(|| survey.run(0..survey.layout().chunks(), &Silent).expect("finite")));
         best.whole = best.whole.min(per_sample(whole, samples as f64));
@@ -116,18 +116,23 @@ fn measure(surrogate: &Surrogate, instructions: InstructionSet) -> Parts {
 }
 
 /// The random coordinates of all inputs, block by block.
-fn draw(instructions: InstructionSet, points: &mut [Lanes], blocks: usize) {
-    for block in 0..blocks {
-        instructions.run(
-            #[inline(always)]
-            || {
-                for (pair, inputs) in (0u32..).zip(points.chunks_exact_mut(2)) {
-                    let [even, odd] = inputs else { continue };
-                    unit_pairs(1, Purpose::Evaluation, (block * LANES) as u64, pair, &mut even.0, &mut odd.0);
-                }
-            },
-        );
-        black_box(&mut *points);
+struct Drawing<'a> {
+    points: &'a mut [Lanes],
+    blocks: usize,
+}
+
+impl WithSimd for Drawing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for block in 0..self.blocks {
+            for (pair, inputs) in (0u32..).zip(self.points.chunks_exact_mut(2)) {
+                let [even, odd] = inputs else { continue };
+                unit_pairs(1, Purpose::Evaluation, (block * LANES) as u64, pair, &mut even.0, &mut odd.0);
+            }
+            black_box(&mut *self.points);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Uniform numbers of many streams at once.
 
-use super::philox::philox_4x32_10;
-use super::stream::{Purpose, counter, key};
+use super::philox::ten_rounds;
+use super::stream::{Purpose, key};
 use super::uniform::{UNIT_BITS, unit_interval};
 
 /// Numbers 2 `pair` and 2 `pair` + 1 of the streams of index `first`, `first` + 1, …, one stream per lane: the same bits as
@@ -19,15 +19,16 @@ pub fn unit_pairs<const LANES: usize>(
     let key = key(seed);
     for lane in 0..LANES {
         let index = first.wrapping_add(lane as u64);
-        let words = philox_4x32_10(counter(pair, purpose, index), key);
+        let words = ten_rounds([u64::from(pair), purpose as u64, index, index >> 32], key);
         even[lane] = unit(words[0], words[1]);
         odd[lane] = unit(words[2], words[3]);
     }
 }
 
+/// The number of two words, low word first; the upper halves of both do not count.
 #[inline(always)]
-fn unit(low: u32, high: u32) -> f64 {
-    unit_interval((u64::from(low) | u64::from(high) << 32) >> (64 - UNIT_BITS))
+fn unit(low: u64, high: u64) -> f64 {
+    unit_interval(((low & 0xFFFF_FFFF) | high << 32) >> (64 - UNIT_BITS))
 }
 
 #[cfg(test)]

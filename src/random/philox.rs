@@ -9,6 +9,7 @@ const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
 /// Golden ratio and √3 − 1: what the key grows by from round to round.
 const KEY_STEPS: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const ROUNDS: usize = 10;
+const LOWER_HALF: u64 = 0xFFFF_FFFF;
 
 /// The four words at `counter` under `key`.
 ///
@@ -18,19 +19,28 @@ const ROUNDS: usize = 10;
 /// let words = pcc::random::philox_4x32_10([0; 4], [0; 2]);
 /// assert_eq!(words, [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
 /// ```
+#[inline]
+pub fn philox_4x32_10(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
+    ten_rounds(counter.map(u64::from), key).map(|word| word as u32)
+}
+
+/// The same on words that are the lower halves of numbers of 64 bits, whatever the upper halves hold: vector instructions multiply
+/// lower halves to numbers of 64 bits, and nothing has to be cut off in between.
 #[inline(always)]
-pub fn philox_4x32_10(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
+pub(super) fn ten_rounds(mut counter: [u64; 4], mut key: [u32; 2]) -> [u64; 4] {
     for round in 0..ROUNDS {
         if round > 0 {
             key = [key[0].wrapping_add(KEY_STEPS[0]), key[1].wrapping_add(KEY_STEPS[1])];
         }
-        let product =
-            [u64::from(MULTIPLIERS[0]) * u64::from(counter[0]), u64::from(MULTIPLIERS[1]) * u64::from(counter[2])];
+        let product = [
+            u64::from(MULTIPLIERS[0]) * (counter[0] & LOWER_HALF),
+            u64::from(MULTIPLIERS[1]) * (counter[2] & LOWER_HALF),
+        ];
         counter = [
-            (product[1] >> 32) as u32 ^ counter[1] ^ key[0],
-            product[1] as u32,
-            (product[0] >> 32) as u32 ^ counter[3] ^ key[1],
-            product[0] as u32,
+            (product[1] >> 32) ^ counter[1] ^ u64::from(key[0]),
+            product[1],
+            (product[0] >> 32) ^ counter[3] ^ u64::from(key[1]),
+            product[0],
         ];
     }
     counter
