@@ -1,16 +1,21 @@
-//! Speed of what takes time: one direct computation, one build, a million samples.
+//! Speed of what takes time: one direct computation, a fit, a build, a million samples.
 //!
-//! `cargo bench` prints a line each; throughput is in model runs or samples per second, on all processors for builds and
-//! samples and on one for the model.
+//! `cargo bench --bench speed` prints a line each; throughput is in model runs or samples per second, on all processors for builds
+//! and samples and on one for the model and for fits of one component.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pcc::artifact::decode;
-use pcc::design::Runner;
+use pcc::design::{NestedLatinHypercube, Runner};
 use pcc::eval::monte_carlo;
+use pcc::fit::minimum_norm::{self, Learnt};
+use pcc::fit::stepwise;
+use pcc::index_set::Hyperbolic;
 use pcc::input::random_point;
+use pcc::polynomial::Family;
 use pcc::progress::Silent;
 use pcc::random::Purpose;
-use pcc::study::Study;
+use pcc::regression::{BasisTables, Response};
+use pcc::study::{FitMethod, Smooth, Study};
 use std::hint::black_box;
 
 const STUDY: &str = include_str!("../surrogates/clutch-r8-eigenvalues.toml");
@@ -52,6 +57,46 @@ fn direct_computation(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// One component of eight inputs: smooth, with inputs of falling influence.
+fn fit(criterion: &mut Criterion) {
+    const INPUTS: usize = 8;
+    const DEGREE: u16 = 15;
+    let component = |x: &[f64]| (0..).zip(x).map(|(j, x)| 0.5f64.powi(j) * x).sum::<f64>().sin();
+    let mut group = criterion.benchmark_group("fit");
+    group.sample_size(10);
+    for (method, runs) in [("stepwise", 960), ("minimum-norm", 240)] {
+        let mut design = NestedLatinHypercube::new(INPUTS, 1);
+        design.grow_to(runs);
+        let samples = design.samples(|_, u| 2.0 * u - 1.0);
+        let values: Vec<f64> = samples.points().map(component).collect();
+        let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); INPUTS];
+        let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
+        let response = Response::of(&values, 1e-13);
+        let stepwise = Study::from_toml(STUDY).expect("the shipped study is valid").fit.method;
+        let smooth = Smooth { max_degree: DEGREE, s2_target: 0.999 };
+        let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+        group.bench_function(format!("one component by {method}, {runs} runs, one core"), |bencher| {
+            bencher.iter(|| {
+                one_core.install(|| match (method, &stepwise) {
+                    ("stepwise", FitMethod::Stepwise(settings)) => {
+                        let sets = Hyperbolic { inputs: INPUTS, q_norm: settings.q_norm };
+                        let shells = sets.shells(settings.max_degree).expect("the sets are small");
+                        drop(black_box(stepwise::fit(&tables, response, &shells, settings, &Silent)));
+                    }
+                    _ => drop(black_box(minimum_norm::fit(
+                        &tables,
+                        response,
+                        &smooth,
+                        &Learnt::nothing(INPUTS),
+                        &Silent,
+                    ))),
+                });
+            });
+        });
+    }
+    group.finish();
+}
+
 fn build(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("build");
     group.sample_size(10);
@@ -86,5 +131,5 @@ fn evaluation(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, direct_computation, build, evaluation);
+criterion_group!(benches, direct_computation, fit, build, evaluation);
 criterion_main!(benches);

@@ -49,10 +49,11 @@ fn says_the_same(found: &str, expected: &str) -> bool {
 fn the_worked_example_prints_what_it_prints() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("surrogates")).unwrap();
-    let study = "surrogates/clutch-r3.toml";
-    fs::copy(repository(study), folder.path().join(study)).unwrap();
+    for file in ["surrogates/clutch-r3.toml", "surrogates/clutch-r8.pcc"] {
+        fs::copy(repository(file), folder.path().join(file)).unwrap();
+    }
     let example: Vec<String> = blocks("console").into_iter().filter(|block| block.starts_with("$ pcc ")).collect();
-    assert_eq!(example.len(), 4, "build, eval, compare, certify");
+    assert_eq!(example.len(), 6, "build, eval, compare, certify, two sweeps");
     for block in example {
         let (command, expected) = block.split_once('\n').unwrap();
         let output = Command::cargo_bin("pcc")

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod commands;
+mod eval_arguments;
 mod points;
 mod progress;
 mod question;

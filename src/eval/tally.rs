@@ -187,9 +187,7 @@ impl Sums {
         match lanes {
             LANES => {
                 for row in values.0.as_chunks::<PARTS>().0 {
-                    for part in 0..PARTS {
-                        sums.add_one(part, row[part]);
-                    }
+                    row.iter().enumerate().for_each(|(part, &value)| sums.add_one(part, value));
                 }
             }
             _ => (0..lanes).for_each(|lane| sums.add_one(lane % PARTS, values.0[lane])),

@@ -3,18 +3,14 @@
 use super::build::FitReport;
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::sureness::Sureness;
-use super::survey::{
-    EventReport, HistogramReport, LEVEL, QuantilesReport, conditions_text, events, events_text, histogram_text,
-    histograms, quantiles_table,
-};
-use super::table::{Align, Table, count, significant};
+use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
+use super::table::count;
 use crate::eval::{Answer, Condition, CriticalValues, Question, Sampler, Sensitivities};
 use crate::spectrum::{ModeSummary, Output, Summary};
-use crate::statistics::{Interval, Moments, Share};
+use crate::statistics::{Moments, Share};
 use crate::surrogate::{Quantile, Surrogate};
 use serde::Serialize;
 use std::f64::consts::TAU;
-use std::fmt::{self, Write};
 
 /// Statistics over samples, from a surrogate or from the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -139,9 +135,6 @@ pub struct QuantileReport {
     /// Its value.
     pub value: f64,
 }
-
-/// Components side by side in a table of Sobol' indices: what fits a terminal.
-const SOBOL_COLUMNS: usize = 4;
 
 /// A surrogate, what was asked of it, and what it answers.
 #[derive(Debug, Clone, Copy)]
@@ -272,16 +265,6 @@ impl Statistics {
             maximum: moments.maximum() * unit,
         }
     }
-
-    fn cells(&self) -> [String; 4] {
-        [self.mean, self.variance.sqrt(), self.minimum, self.maximum].map(|value| significant(value, 5))
-    }
-}
-
-/// A rate as a count with two significant digits: 6 600 000.
-pub(super) fn rounded(rate: f64) -> String {
-    let unit = 10f64.powf(rate.max(10.0).log10().floor() - 1.0);
-    count(((rate / unit).round() * unit) as u64)
 }
 
 fn mode_report(mode: usize, summary: &ModeSummary, samples: u64) -> ModeReport {
@@ -313,65 +296,6 @@ fn analyses(surrogate: &Surrogate) -> Vec<Analysis> {
         .collect()
 }
 
-impl fmt::Display for EvalReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rate = self.samples as f64 / self.elapsed_seconds.max(1e-9);
-        writeln!(
-            f,
-            "{}: {} samples of the {} in {:.2} s ({} per second), seed {}\n",
-            self.study,
-            count(self.samples),
-            self.source,
-            self.elapsed_seconds,
-            rounded(rate),
-            self.seed
-        )?;
-        self.write_circumstances(f)?;
-        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-        let modes: Vec<String> = self.modes.iter().map(|mode| mode.mode.to_string()).collect();
-        let judged_by = match self.source {
-            "model" => "all modes".to_owned(),
-            _ => format!("modes {}", modes.join(", ")),
-        };
-        writeln!(f, "  stable                 {}   judged by {judged_by}", percent(self.stable_proportion))?;
-        match self.source {
-            "model" => {
-                let Interval { lower, upper, level } = self.sureness.interval;
-                let range = format!("{} to {}", percent(lower), percent(upper));
-                writeln!(f, "  sampling interval      {range}   {:.0} %", 100.0 * level)?;
-            }
-            _ => write!(f, "{}", self.sureness)?,
-        }
-        write!(f, "{}", events_text(&self.events))?;
-        writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
-        if let Some((low, high)) = self.central_residuals() {
-            let [low, high] = [low, high].map(|value| significant(value, 3));
-            writeln!(
-                f,
-                "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out"
-            )?;
-        }
-        writeln!(f, "\n{}", self.mode_table())?;
-        write!(f, "{}", self.component_table())?;
-        writeln!(f, "re in 1/s, im in rad/s")?;
-        if let Some(table) = quantiles_table(&self.quantiles) {
-            write!(f, "\n{table}")?;
-        }
-        self.histograms.iter().try_for_each(|histogram| write!(f, "\n{}", histogram_text(histogram)))?;
-        if let Some(sensitivity) = &self.sensitivity {
-            write!(f, "{sensitivity}")?;
-        }
-        let sobol = self.sobol_table();
-        if !sobol.is_empty() {
-            write!(f, "\n{sobol}")?;
-        }
-        if let Some(critical) = &self.critical {
-            write!(f, "{critical}")?;
-        }
-        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
-    }
-}
-
 /// Sobol' points are balanced in numbers that are powers of two.
 fn unbalanced(question: &Question) -> Option<String> {
     let per_replicate = question.samples / u64::from(question.replicates.max(1));
@@ -383,116 +307,4 @@ fn unbalanced(question: &Question) -> Option<String> {
         "replicates of {} Sobol' points are less balanced than those of a power of two; use -n {nearest}",
         count(per_replicate)
     ))
-}
-
-impl EvalReport {
-    /// What is not plain about these samples.
-    fn write_circumstances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.complete {
-            writeln!(f, "  incomplete             interrupted before the last samples")?;
-        }
-        if self.replicates > 1 {
-            let points = count(self.samples / u64::from(self.replicates));
-            writeln!(
-                f,
-                "  sampler                {}, {} replicates of {points} points",
-                self.sampler, self.replicates
-            )?;
-        } else if self.sampler != Sampler::MonteCarlo.name() {
-            writeln!(f, "  sampler                {}", self.sampler)?;
-        }
-        if !self.conditions.is_empty() {
-            writeln!(f, "  where                  {}", conditions_text(&self.conditions))?;
-        }
-        Ok(())
-    }
-
-    /// The residual quantiles at 2.5 and 97.5 %.
-    fn central_residuals(&self) -> Option<(f64, f64)> {
-        let at = |level: f64| self.max_re_residuals.iter().find(|quantile| quantile.level == level).map(|q| q.value);
-        at(0.025).zip(at(0.975))
-    }
-
-    pub(super) fn mode_table(&self) -> Table {
-        let right = Align::Right;
-        let mut table = Table::new(&[
-            ("mode", Align::Left),
-            ("", Align::Left),
-            ("mean", right),
-            ("std. dev.", right),
-            ("minimum", right),
-            ("maximum", right),
-            ("unstable", right),
-        ]);
-        for mode in &self.modes {
-            let unstable = format!("{:.2} %", 100.0 * mode.unstable_share);
-            let lines = [
-                (mode.mode.to_string(), "frequency, Hz", &mode.frequency_hz, unstable),
-                (String::new(), "growth rate, 1/s", &mode.growth_rate, String::new()),
-                (String::new(), "damping ratio", &mode.damping_ratio, String::new()),
-            ];
-            for (rank, what, statistics, unstable) in lines {
-                let [mean, deviation, minimum, maximum] = statistics.cells();
-                table.row([rank, what.to_owned(), mean, deviation, minimum, maximum, unstable]);
-            }
-        }
-        table
-    }
-
-    fn component_table(&self) -> Table {
-        let right = Align::Right;
-        let mut columns = vec![
-            ("component", Align::Left),
-            ("mean", right),
-            ("std. dev.", right),
-            ("minimum", right),
-            ("maximum", right),
-        ];
-        let exact = self.components.iter().any(|component| component.analysis.is_some());
-        if exact {
-            columns.extend([("mean by coefficients", right), ("std. dev.", right)]);
-        }
-        let mut table = Table::new(&columns);
-        for component in &self.components {
-            let mut row = vec![component.name.clone()];
-            row.extend(component.samples.cells());
-            if let Some(analysis) = &component.analysis {
-                row.push(significant(analysis.mean_from_coefficients, 5));
-                row.push(significant(analysis.variance_from_coefficients.sqrt(), 5));
-            }
-            table.row(row);
-        }
-        table
-    }
-
-    /// First-order and total indices, one column per component; empty without coefficients.
-    fn sobol_table(&self) -> String {
-        let shown: Vec<(&str, &[SobolReport])> = self
-            .components
-            .iter()
-            .filter_map(|component| Some((component.name.as_str(), component.analysis.as_ref()?.sobol.as_slice())))
-            .filter(|(_, sobol)| !sobol.is_empty())
-            .collect();
-        if shown.is_empty() {
-            return String::new();
-        }
-        let mut text = String::new();
-        for part in shown.chunks(SOBOL_COLUMNS) {
-            let mut columns = vec![("Sobol' index", Align::Left)];
-            columns.extend(part.iter().map(|(name, _)| (*name, Align::Right)));
-            let mut table = Table::new(&columns);
-            for (j, input) in part[0].1.iter().enumerate() {
-                let mut row = vec![input.input.clone()];
-                row.extend(part.iter().map(|(_, sobol)| format!("{:.4} / {:.4}", sobol[j].first, sobol[j].total)));
-                table.row(row);
-            }
-            let _ = writeln!(text, "{table}");
-        }
-        text.pop();
-        let _ = writeln!(
-            text,
-            "first order / total: the share of a component's variance that an input causes alone / in all"
-        );
-        text
-    }
 }

@@ -5,6 +5,7 @@ mod certify;
 mod charts;
 mod compare;
 mod eval;
+mod eval_text;
 mod inspect;
 mod page;
 mod paper_charts;

@@ -130,7 +130,7 @@ fn values(sweeps: &[Sweep], number: usize) -> Vec<f64> {
 impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let samples = self.samples as f64 * self.points.len() as f64;
-        let rate = super::eval::rounded(samples / self.elapsed_seconds.max(1e-9));
+        let rate = super::eval_text::rounded(samples / self.elapsed_seconds.max(1e-9));
         writeln!(
             f,
             "{}: {} points with {} samples each of the surrogate in {:.2} s ({rate} per second), seed {}",

@@ -1,6 +1,6 @@
 //! `pcc eval`
 
-use super::super::arguments::{Asked as AskedOptions, Eval, Pictures};
+use super::super::eval_arguments::{Asked as AskedOptions, Eval, Pictures};
 use super::super::points::{Evaluated, PointsFile};
 use super::super::question::Shard;
 use super::super::{Context, Ending};

@@ -1,6 +1,6 @@
 //! `pcc merge`
 
-use super::super::arguments::Merge;
+use super::super::eval_arguments::Merge;
 use super::super::{Context, Ending};
 use super::eval::{check_pictures, present, stable};
 use super::{keep_inputs, keep_unmarked_files};
