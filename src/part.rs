@@ -27,8 +27,8 @@ const VERSION: u64 = 1;
 /// What every part file starts with.
 pub const MARK: &str = "{\"pcc_part\":";
 
-/// Bytes of a part file that are read at most: a million points of sweeps take a quarter of that.
-const LARGEST: u64 = 1 << 30;
+/// Bytes of a part file that are read at most: the most points of sweeps take a quarter of that.
+const LARGEST: u64 = 1 << 29;
 
 /// Bytes that the first line has at most.
 const LONGEST_HEADER: usize = 256;

@@ -49,7 +49,7 @@ pub(super) struct Asked {
 
     /// Independent randomisations that the samples of sobol or latin-hypercube are divided among; the error is estimated from
     /// their spread [default: 16]
-    #[arg(long, value_name = "R", conflicts_with = "points", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "R", conflicts_with = "points", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub replicates: Option<u32>,
 
     /// Confine or fix inputs, in physical units: mu=0.1..0.2,k_p=15.8e6

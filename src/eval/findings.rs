@@ -70,7 +70,7 @@ impl Findings {
     }
 
     /// Whether this could have been found under such a layout: series that are complete but for the first and the last, with as many
-    /// components, modes, events and bins. What [`super::Survey::run`] finds always is; what a file says need not be.
+    /// components, modes, events and bins, and counts that add up to the numbers of samples. What [`super::Survey::run`] finds always is; what a file says need not be.
     pub fn fits(&self, layout: &Layout) -> bool {
         let per_series = layout.chunks_per_series();
         if self.first > self.end || self.end > layout.chunks() {
@@ -83,9 +83,14 @@ impl Findings {
             let end = self.end.min((number + 1) * per_series) - number * per_series;
             forest.is_consistent() && forest.first() == first && forest.end() == end
         });
-        let tallies = self.series.iter().flat_map(Forest::values).all(|tally| layout.fits(tally));
-        let histograms = self.histograms.iter().map(|histogram| histogram.counts.len());
-        self.series.len() as u64 == count && ranges && tallies && histograms.eq(layout.bins.iter().copied())
+        let tallies = self.series.iter().flat_map(Forest::parts).all(|(chunks, tally)| layout.fits(&chunks, tally));
+        let samples = layout.samples_in(&self.chunks());
+        let bins = self.histograms.iter().map(|histogram| histogram.counts.len());
+        self.series.len() as u64 == count
+            && ranges
+            && tallies
+            && bins.eq(layout.bins.iter().copied())
+            && self.histograms.iter().all(|histogram| histogram.checked_samples() == Some(samples))
     }
 
     /// All samples together, series after series; `None` without samples.

@@ -27,6 +27,11 @@ impl Histogram {
         self.below + self.counts.iter().sum::<u64>() + self.above
     }
 
+    /// The same for counts that come from a file: `None` if there are more than can be counted.
+    pub(super) fn checked_samples(&self) -> Option<u64> {
+        self.counts.iter().try_fold(self.below.checked_add(self.above)?, |sum, &count| sum.checked_add(count))
+    }
+
     /// Adds the samples of `other`, which has as many bins.
     pub fn merge(&mut self, other: &Self) {
         self.below += other.below;

@@ -77,11 +77,18 @@ impl Layout {
         ((series / self.replicates) as usize, (series % self.replicates) as usize, samples)
     }
 
-    /// Whether a tally has counts and moments of all that is kept.
-    pub(super) fn fits(&self, tally: &Tally) -> bool {
-        tally.summary.components.len() == self.components
-            && tally.summary.modes.len() == self.modes
+    /// Whether a tally has counts and moments of all that is kept, of so many samples as these chunks of a series have.
+    pub(super) fn fits(&self, chunks: &Range<u64>, tally: &Tally) -> bool {
+        let summary = &tally.summary;
+        let samples = self.samples_in(chunks);
+        let modes = summary.modes.iter();
+        let moments = modes.clone().flat_map(|mode| [&mode.growth_rate, &mode.angular_frequency, &mode.damping_ratio]);
+        let counts = tally.events.iter().copied().chain(modes.map(|mode| mode.unstable));
+        summary.components.len() == self.components
+            && summary.modes.len() == self.modes
             && tally.events.len() == self.events
+            && moments.chain(&summary.components).chain([&summary.max_re]).all(|moments| moments.count() == samples)
+            && counts.chain(summary.stable_if_shifted).chain([summary.stable]).all(|count| count <= samples)
     }
 }
 

@@ -237,3 +237,38 @@ fn below<'a>(parent: &'a [(usize, u16)], terms: &'a Terms) -> impl Iterator<Item
 fn is_parent(factors: &[(usize, u16)], terms: &Terms) -> bool {
     below(factors, terms).any(|(longer, _)| longer.len() == factors.len() + 1)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eval::handmade::{expansion, inputs, surrogate};
+
+    #[test]
+    fn leaves_are_folded_and_coefficients_of_parents_start_the_sums() {
+        // ξ1 is a parent of ξ1 ξ2 and ξ1 ξ3; ξ1 ξ2 of ξ1 ξ2 ξ3, without a coefficient of its own in the second component.
+        let first =
+            expansion(&[(&[0, 0, 0], 0.5), (&[1, 0, 0], 1.0), (&[1, 1, 0], 2.0), (&[1, 0, 1], 3.0), (&[0, 0, 2], 4.0)]);
+        let second = expansion(&[(&[1, 1, 1], 5.0), (&[0, 1, 0], 6.0)]);
+        let surrogate = surrogate(inputs(&[(-1.0, 1.0); 3]), vec![first, second]);
+        let program = Program::new(&surrogate, 0);
+        assert_eq!((program.degrees.as_slice(), program.terms), (&[1, 1, 2][..], 6));
+        // Components: Re and Im of two modes. φ_2(ξ3) of the first, φ_1(ξ2) of the second.
+        let constants: Vec<f64> = program.constants.iter().map(|&(constant, _)| constant).collect();
+        assert_eq!(constants, [0.5, 10.0, 0.0, 11.0]);
+        assert_eq!(program.singles.iter().map(|leaf| leaf.coefficient).collect::<Vec<_>>(), [4.0, 6.0]);
+        // φ_1(ξ1) φ_1(ξ2) is the only product.
+        assert_eq!(program.products, [[0, 1]]);
+        let groups: Vec<(f64, u32)> = program.groups.iter().map(|group| (group.initial, group.parent)).collect();
+        assert_eq!(groups, [(1.0, 0), (0.0, 4)]);
+        assert_eq!(program.leaves.iter().map(|leaf| leaf.coefficient).collect::<Vec<_>>(), [2.0, 3.0, 5.0]);
+        // Four univariate values, a product, two singles, three leaves, the first of the second group a product, two groups.
+        assert_eq!(program.flops(), 4 * 5 + 1 + 2 * 2 + 2 * 3 - 1 + 2 * 2);
+    }
+
+    #[test]
+    fn constants_need_no_operations() {
+        let surrogate = surrogate(inputs(&[(0.0, 1.0)]), vec![expansion(&[(&[0], -2.0)])]);
+        let program = Program::new(&surrogate, 0);
+        assert_eq!((program.flops(), program.rows(), program.terms), (0, 0, 0));
+    }
+}

@@ -99,3 +99,58 @@ fn spectral_abscissa(growth_rates: &[Lanes], angular_frequencies: &[Lanes]) -> L
     }
     largest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{Component, spectral_abscissa as abscissa_of};
+
+    /// A pair of modes from the mean s and the constant c_0 of z² + c_0.
+    fn pair_output() -> Output {
+        let component = |id| Component { id, name: String::new(), center: 0.0, scale: 1.0 };
+        Output {
+            kind: OutputKind::Cluster,
+            modes: vec![1, 2],
+            name: String::new(),
+            unit: String::new(),
+            components: (0..4).map(component).collect(),
+        }
+    }
+
+    /// Bits, so that NaN equals NaN and 0 is not −0.
+    fn bits(values: impl IntoIterator<Item = f64>) -> Vec<u64> {
+        values.into_iter().map(|value| if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }).collect()
+    }
+
+    #[test]
+    fn pairs_in_lanes_are_those_of_one_sample_for_all_kinds_of_numbers() {
+        let parts = [0.0, -0.0, 1.0, -3.5, 1e-300, -5e-324, 1e200, -1e308, f64::INFINITY, f64::NAN, 1e-160, -2e-140];
+        let cases: Vec<[f64; 4]> = parts
+            .iter()
+            .flat_map(|&re| parts.iter().map(move |&im| [re, im]))
+            .flat_map(|[re, im]| [[-1.0, 100.0, re, im], [re, im, 4.0, 0.5]])
+            .collect();
+        let output = pair_output();
+        // Unusual numbers beside plain ones, and among their like.
+        for chunk in cases.chunks(LANES - 1) {
+            let mut results = Results {
+                components: vec![Lanes::splat(0.25); 4],
+                growth_rates: vec![Lanes::splat(0.0); 2],
+                angular_frequencies: vec![Lanes::splat(0.0); 2],
+                max_re: Lanes::splat(0.0),
+            };
+            for (lane, case) in chunk.iter().enumerate() {
+                (0..4).for_each(|id| results.components[id].0[lane] = case[id]);
+            }
+            recombine(std::slice::from_ref(&output), &mut results);
+            for (lane, case) in chunk.iter().enumerate() {
+                let mut expected = Vec::new();
+                output.recombine(case, &mut expected);
+                let found = |lists: &[Lanes]| bits(lists.iter().map(|list| list.0[lane]));
+                assert_eq!(found(&results.growth_rates), bits(expected.iter().map(|l| l.re)), "{case:?}");
+                assert_eq!(found(&results.angular_frequencies), bits(expected.iter().map(|l| l.im)), "{case:?}");
+                assert_eq!(bits([results.max_re.0[lane]]), bits([abscissa_of(&expected)]), "{case:?}");
+            }
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::survey_error::SurveyError;
 use crate::input::InputSpace;
 
 /// Points of all sweeps together, at most: their counts are kept in memory.
-const MOST_CELLS: u64 = 1_000_000;
+const MOST_CELLS: u64 = 1 << 18;
 
 /// A box in the standardized domain: every input is confined to an interval, or fixed.
 #[derive(Debug, Clone, PartialEq)]

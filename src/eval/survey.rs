@@ -76,6 +76,9 @@ impl<'a> Survey<'a> {
     /// Bins of one histogram, at most.
     pub const MOST_BINS: u32 = 1_000_000;
 
+    /// Replicates, at most: each has scrambled direction numbers of its own.
+    pub const MOST_REPLICATES: u32 = 1000;
+
     /// Checks `question` against `surrogate`.
     ///
     /// # Errors
@@ -87,12 +90,16 @@ impl<'a> Survey<'a> {
         instructions: InstructionSet,
     ) -> Result<Self, SurveyError> {
         let regions = regions(&surrogate.inputs, question)?;
+        let (cells, samples) = (regions.len() as u64, question.samples);
+        if samples.checked_mul(cells).is_none() {
+            return Err(SurveyError::TooManySamples { cells, samples });
+        }
         let (sources, samples_per_series) = sources(surrogate, question)?;
         let (watches, binned) = (watches(surrogate, question)?, binned(surrogate, question)?);
         let is_sweep = !question.sweeps.is_empty();
         let kept = |count| if is_sweep { 0 } else { count };
         let layout = Layout {
-            cells: regions.len() as u64,
+            cells,
             replicates: sources.len() as u64,
             samples_per_series,
             chunk: Layout::chunk_size(surrogate.mesh.elements().len()),
@@ -239,6 +246,9 @@ fn sources(surrogate: &Surrogate, question: &Question) -> Result<(Vec<Source>, u
     }
     if sampler == Sampler::MonteCarlo && replicates > 1 {
         return Err(SurveyError::ReplicatesOfMonteCarlo);
+    }
+    if replicates > Survey::MOST_REPLICATES {
+        return Err(SurveyError::TooManyReplicates { replicates, most: Survey::MOST_REPLICATES });
     }
     if !samples.is_multiple_of(u64::from(replicates)) {
         let replicates = u64::from(replicates);

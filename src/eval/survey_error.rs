@@ -15,6 +15,22 @@ pub enum SurveyError {
     /// Independent samples need no replicates.
     #[error("Monte Carlo needs no replicates; leave them out, or choose the sampler sobol or latin-hypercube")]
     ReplicatesOfMonteCarlo,
+    /// More replicates than memory should hold.
+    #[error("{replicates} replicates are more than {most}; use fewer, 16 for example")]
+    TooManyReplicates {
+        /// Number of replicates.
+        replicates: u32,
+        /// The limit.
+        most: u32,
+    },
+    /// More samples than can be numbered.
+    #[error("the sweeps have {cells} points with {samples} samples each, more than can be numbered; use fewer samples")]
+    TooManySamples {
+        /// Points of all sweeps.
+        cells: u64,
+        /// Samples of each.
+        samples: u64,
+    },
     /// Replicates of different size.
     #[error("{samples} samples cannot be divided among {replicates} replicates; use a multiple, {better} for example")]
     NotDivisible {

@@ -165,7 +165,7 @@ impl EvalReport {
         let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
         report.complete = answer.is_complete;
         report.sampler = question.sampler.name();
-        report.replicates = question.replicates;
+        report.replicates = cell.replicates.len() as u32;
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
         report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, share.interval);

@@ -1,6 +1,7 @@
 //! Partial results combined in an order that does not depend on who computed them.
 
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// What can be combined with what comes right after it.
 pub trait Merge {
@@ -106,9 +107,10 @@ impl<T: Merge> Forest<T> {
         Some(total)
     }
 
-    /// The values held, for checks of what was read from a file.
-    pub fn values(&self) -> impl Iterator<Item = &T> {
-        self.trees.iter().map(|tree| &tree.value)
+    /// What is held of which items, for checks of what was read from a file.
+    pub fn parts(&self) -> impl Iterator<Item = (Range<u64>, &T)> {
+        let range = |tree: &Tree<T>| tree.start().unwrap_or(u64::MAX)..tree.end().unwrap_or(u64::MAX);
+        self.trees.iter().map(move |tree| (range(tree), &tree.value))
     }
 
     /// Whether the trees follow one another without gaps from `first`, none is half of a tree that is complete, and no number overflows:
