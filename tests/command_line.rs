@@ -2,14 +2,9 @@
 
 mod support;
 
-use assert_cmd::Command;
 use std::fs;
-use std::path::Path;
+use support::command::{output, pcc, refusal};
 use support::{repository, text};
-
-fn pcc(folder: &Path, arguments: &[&str]) -> std::process::Output {
-    Command::cargo_bin("pcc").unwrap().current_dir(folder).args(arguments).output().unwrap()
-}
 
 /// A folder with the r = 2 study, its surrogate and three points.
 fn workplace() -> tempfile::TempDir {
@@ -18,28 +13,6 @@ fn workplace() -> tempfile::TempDir {
     fs::copy(repository("tests/data/golden.v1.pcc"), folder.path().join("surrogate.pcc")).unwrap();
     fs::write(folder.path().join("points.csv"), "mu,k_p\n0.25,16e6\n0.0,15.2e6\n0.5,16.8e6\n").unwrap();
     folder
-}
-
-/// Standard output of a command that must succeed.
-fn output(folder: &Path, arguments: &[&str]) -> String {
-    let output = pcc(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// The message of a command that must end with exit code 2, write nothing to standard output and leave no file behind.
-fn refusal(folder: &Path, arguments: &[&str]) -> String {
-    let listing = |folder: &Path| {
-        let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-        names.sort();
-        names
-    };
-    let before = listing(folder);
-    let output = pcc(folder, arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));
-    assert_eq!(listing(folder), before, "{arguments:?} left something behind");
-    String::from_utf8(output.stderr).unwrap()
 }
 
 /// Snapshots without what changes from run to run: times, rates and digits beyond what is portable.

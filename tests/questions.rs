@@ -2,14 +2,10 @@
 
 mod support;
 
-use assert_cmd::Command;
 use std::fs;
 use std::path::Path;
+use support::command::{files, output, refusal};
 use support::repository;
-
-fn pcc(folder: &Path, arguments: &[&str]) -> std::process::Output {
-    Command::cargo_bin("pcc").unwrap().current_dir(folder).args(arguments).output().unwrap()
-}
 
 /// A folder with the shipped surrogates of 3 and 8 inputs.
 fn workplace() -> tempfile::TempDir {
@@ -20,30 +16,8 @@ fn workplace() -> tempfile::TempDir {
     folder
 }
 
-fn output(folder: &Path, arguments: &[&str]) -> String {
-    let output = pcc(folder, arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
 fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
     serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
-}
-
-fn files(folder: &Path) -> Vec<std::ffi::OsString> {
-    let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    names.sort();
-    names
-}
-
-/// The message of a command that must end with exit code 2, print nothing and leave nothing behind.
-fn refusal(folder: &Path, arguments: &[&str]) -> String {
-    let before = files(folder);
-    let output = pcc(folder, arguments);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    assert!(output.stdout.is_empty(), "{arguments:?} printed {}", String::from_utf8_lossy(&output.stdout));
-    assert_eq!(files(folder), before, "{arguments:?} left something behind");
-    String::from_utf8(output.stderr).unwrap()
 }
 
 macro_rules! assert_output {

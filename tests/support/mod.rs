@@ -1,6 +1,8 @@
 //! What several tests share.
 #![allow(dead_code, reason = "every test file compiles its own copy and uses a part of it")]
 
+pub mod command;
+
 use pcc::progress::Silent;
 use pcc::study::Study;
 use pcc::surrogate::Surrogate;
