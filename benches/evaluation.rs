@@ -147,7 +147,7 @@ fn print_parts(surrogate: &Surrogate) {
         ("of the peak", right),
         ("roots", right),
         ("random numbers", right),
-        ("of the whole", right),
+        ("their share", right),
         ("whole", right),
         ("samples/s", right),
     ]);

@@ -33,8 +33,17 @@ const EVALUATOR: [&str; 10] = [
     "surrogate",
     "spectrum",
 ];
-const PURE_SPECTRUM: [&str; 8] =
-    ["Block", "Component", "ModeSummary", "Output", "OutputKind", "Summary", "is_equal_frequency", "spectral_abscissa"];
+const PURE_SPECTRUM: [&str; 9] = [
+    "Block",
+    "Component",
+    "ModeSummary",
+    "Output",
+    "OutputKind",
+    "Summary",
+    "damping_ratio",
+    "is_equal_frequency",
+    "spectral_abscissa",
+];
 
 fn layer(module: &str) -> usize {
     LAYERS

@@ -113,6 +113,15 @@ fn parts_are_merged_in_stages() {
     }
     let said = output(folder.path(), &["merge", "2.part", "1.part", "--part", "middle.part"]);
     assert!(said.starts_with("2 parts with 49 152 of 100 000 samples"), "{said}");
+    // The shards of more shards than there are chunks are empty, and do no harm.
+    for shard in 0..7 {
+        let (number, name) = (format!("{shard}/7"), format!("small-{shard}.part"));
+        output(folder.path(), &["eval", "clutch-r3.pcc", "-n", "5000", "--shard", &number, "--part", &name]);
+    }
+    let names: Vec<String> = (0..7).rev().map(|shard| format!("small-{shard}.part")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let small = json(folder.path(), &[&["merge"], &names[..]].concat());
+    assert_eq!(without_time(small), without_time(json(folder.path(), &["eval", "clutch-r3.pcc", "-n", "5000"])));
     let whole = json(folder.path(), &["eval", "clutch-r3.pcc", "-n", "1e5"]);
     let merged = json(folder.path(), &["merge", "3.part", "middle.part", "0.part"]);
     assert_eq!(without_time(merged), without_time(whole));
@@ -153,11 +162,20 @@ fn bad_questions_are_refused_by_name() {
         eval(&["--histogram", "max_re=0:1:0"]),
         eval(&["--quantiles", "0.5,1.5"]),
         eval(&["--replicates", "4"]),
+        eval(&["--sampler", "sobol", "--replicates", "1"]),
+        eval(&["--sampler", "sobol", "--replicates", "1000000"]),
+        eval(&["--sampler", "sobol", "--critical", "mu"]),
         eval(&["--sampler", "sobol", "--replicates", "7"]),
         eval(&["--sampler", "halton"]),
         eval(&["--table", "x.csv"]),
         eval(&["--chart", "x.svg"]),
         eval(&["--sweep", "mu=0:0.5:3", "--chart", "clutch-r3.pcc"]),
+        eval(&["--sweep", "mu=0:0.5:3", "--table", "clutch-r8.pcc"]),
+        eval(&["--sweep", "mu=0:0.5:3", "--chart", "x.png"]),
+        eval(&["--sweep", "mu=0:0.5:3", "--part", "x.part", "--table", "x.csv"]),
+        eval(&["--sweep", "mu=0:0.5:1e9"]),
+        eval(&["--sweep", "mu=0:0.5:50000", "--sampler", "sobol"]),
+        eval(&["--where", "mu=0,1"]),
         eval(&["--shard", "0/3"]),
         eval(&["--shard", "3/3", "--part", "x.part"]),
         eval(&["--shard", "0/0", "--part", "x.part"]),
@@ -198,7 +216,7 @@ fn bad_parts_are_refused_by_name() {
     let last = changed.len() - 10;
     changed[last] = b'7';
     fs::write(folder.path().join("changed.part"), changed).unwrap();
-    let cases: [&[&str]; 15] = [
+    let cases: [&[&str]; 17] = [
         &["merge"],
         &["merge", "none.part"],
         &["merge", "clutch-r3.pcc"],
@@ -214,6 +232,8 @@ fn bad_parts_are_refused_by_name() {
         &["merge", "0.part", "other.part", "2.part"],
         &["merge", "0.part", "more.part", "2.part"],
         &["merge", "0.part", "1.part", "2.part", "--table", "x.csv"],
+        &["merge", "0.part", "1.part", "2.part", "--part", "x.part", "--table", "x.csv"],
+        &["inspect", "0.part"],
     ];
     let messages: String = cases
         .iter()
@@ -246,7 +266,14 @@ fn an_interruption_prints_what_was_counted() {
         String::from_utf8(output.stdout).unwrap()
     };
     let text = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e13"]);
-    assert!(text.contains("incomplete             interrupted before the last samples"), "{text}");
+    assert!(text.contains("  incomplete             interrupted after "), "{text}");
+    let sobol = interrupt(&["eval", "clutch-r8.pcc", "-n", "16000000000", "--sampler", "sobol"]);
+    assert!(sobol.contains("sobol, not two of 16 replicates of 1 000 000 000 points"), "{sobol}");
+    // All samples are there, the critical values are not.
+    let critical = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e6", "--critical", "mu", "--json"]);
+    let critical: serde_json::Value = serde_json::from_str(&critical).unwrap();
+    assert_eq!((&critical["samples"], &critical["complete"]), (&1_000_000.into(), &false.into()));
+    assert!(critical["critical"].is_null() && critical["sensitivity"].is_object());
     let report = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e13", "--json", "--quantiles", "0.5"]);
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
     assert_eq!(report["complete"], false);
@@ -261,6 +288,6 @@ fn an_interruption_prints_what_was_counted() {
     assert_eq!((said.as_str(), files(folder.path())), ("", before));
     let sweep =
         interrupt(&["eval", "clutch-r3.pcc", "-n", "1e9", "--sweep", "mu=0:0.5:1000", "--table", "x.csv", "--json"]);
-    assert!(sweep.is_empty() || sweep.contains("\"complete\": false"), "{sweep}");
+    assert!(sweep.contains("\"complete\": false") && sweep.contains("\"points\": ["), "{sweep}");
     assert!(!folder.path().join("x.csv").exists());
 }

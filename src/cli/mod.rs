@@ -31,10 +31,18 @@ enum Ending {
 /// What every command is given.
 struct Context {
     json: bool,
+    quiet: bool,
     terminal: Terminal,
 }
 
 impl Context {
+    /// A remark on standard error, beside a report.
+    fn say(&self, remark: &str) {
+        if !self.quiet {
+            complain(remark);
+        }
+    }
+
     /// Prints a report: text for people, or one JSON document.
     fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
         print(&if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() })
@@ -79,7 +87,11 @@ fn print(text: &str) -> anyhow::Result<()> {
 fn run(arguments: Arguments) -> anyhow::Result<Ending> {
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let context = Context { json: arguments.json, terminal: Terminal::new(arguments.quiet, Interrupt::install()?) };
+    let context = Context {
+        json: arguments.json,
+        quiet: arguments.quiet,
+        terminal: Terminal::new(arguments.quiet, Interrupt::install()?),
+    };
     pool.install(|| match arguments.command {
         Command::Run(options) => commands::run(&context, &options),
         Command::Build(options) => commands::build(&context, &options),

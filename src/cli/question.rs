@@ -41,7 +41,7 @@ pub(super) struct Shard {
 
 /// `INPUT=LOWER..UPPER` or `INPUT=VALUE`.
 pub(super) fn condition(text: &str) -> Result<Condition, String> {
-    const FORM: &str = "write INPUT=LOWER..UPPER or INPUT=VALUE, like mu=0.1..0.2 or k_p=15.8e6";
+    const FORM: &str = "write INPUT=LOWER..UPPER or INPUT=VALUE, like mu=0.1..0.2,k_p=15.8e6: decimal points, and commas between conditions";
     let (input, value) = named(text).ok_or(FORM)?;
     let (lower, upper) = value.split_once("..").unwrap_or((value, value));
     let (lower, upper) = (number(lower).ok_or(FORM)?, number(upper).ok_or(FORM)?);
@@ -108,7 +108,9 @@ fn named(text: &str) -> Option<(String, &str)> {
 fn triple(text: &str) -> Option<(f64, f64, u32)> {
     let parts: Vec<&str> = text.split(':').collect();
     let [from, to, count] = parts[..] else { return None };
-    Some((number(from)?, number(to)?, count.trim().parse().ok()?))
+    // Also 1e3; more than fits is too many in any case, and refused as such.
+    let count = number(count).filter(|count| count.fract() == 0.0 && *count >= 0.0)?;
+    Some((number(from)?, number(to)?, count as u32))
 }
 
 fn number(text: &str) -> Option<f64> {

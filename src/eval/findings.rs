@@ -39,6 +39,9 @@ impl Findings {
         }
         if let Some(forest) = self.series.last_mut() {
             forest.push(tally);
+            if inside + 1 == layout.chunks_per_series() {
+                forest.shrink();
+            }
         }
         self.end += 1;
     }
@@ -79,8 +82,9 @@ impl Findings {
         let series = self.first / per_series..self.end.div_ceil(per_series);
         let count = if self.first == self.end { 0 } else { series.end - series.start };
         let ranges = series.zip(&self.series).all(|(number, forest)| {
-            let first = self.first.max(number * per_series) - number * per_series;
-            let end = self.end.min((number + 1) * per_series) - number * per_series;
+            let start = number.saturating_mul(per_series);
+            let first = self.first.max(start) - start;
+            let end = self.end.min(start.saturating_add(per_series)) - start;
             forest.is_consistent() && forest.first() == first && forest.end() == end
         });
         let tallies = self.series.iter().flat_map(Forest::parts).all(|(chunks, tally)| layout.fits(&chunks, tally));
@@ -109,12 +113,10 @@ impl Findings {
                 return None;
             }
             // Of replicates that can be compared with others, or of all there is.
-            if whole.len() > 1 {
-                return Some(Cell { total: total(whole.iter().cloned())?, replicates: whole });
+            match whole.len() {
+                0 | 1 => Some(Cell { total: total(series.iter().filter_map(Forest::total))?, replicates: Vec::new() }),
+                _ => Some(Cell { total: total(whole.iter().cloned())?, replicates: whole }),
             }
-            let all: Vec<Tally> = series.iter().filter_map(Forest::total).collect();
-            let total = total(all.into_iter())?;
-            Some(Cell { replicates: vec![total.clone()], total })
         });
         let histograms = if is_complete { self.histograms.clone() } else { Vec::new() };
         Answer { is_complete, cells: cells.collect(), histograms }
@@ -143,7 +145,7 @@ pub struct Answer {
 pub struct Cell {
     /// All samples.
     pub total: Tally,
-    /// Each randomisation.
+    /// Each randomisation that is complete, if there are several.
     pub replicates: Vec<Tally>,
 }
 
@@ -151,6 +153,7 @@ impl Cell {
     /// The share of samples that `hits` counts, with its interval at `level`.
     pub fn share(&self, level: f64, hits: impl Fn(&Tally) -> u64) -> Share {
         let proportion = |tally: &Tally| Proportion { hits: hits(tally), samples: tally.summary.samples() };
-        Share::of_replicates(&self.replicates.iter().map(proportion).collect::<Vec<_>>(), level)
+        let replicates = if self.replicates.is_empty() { std::slice::from_ref(&self.total) } else { &self.replicates };
+        Share::of_replicates(&replicates.iter().map(proportion).collect::<Vec<_>>(), level)
     }
 }

@@ -87,7 +87,7 @@ impl Layout {
         summary.components.len() == self.components
             && summary.modes.len() == self.modes
             && tally.events.len() == self.events
-            && moments.chain(&summary.components).chain([&summary.max_re]).all(|moments| moments.count() == samples)
+            && moments.chain(&summary.components).chain([&summary.max_re]).all(|moments| moments.are_of(samples))
             && counts.chain(summary.stable_if_shifted).chain([summary.stable]).all(|count| count <= samples)
     }
 }

@@ -40,7 +40,7 @@ pub use plan::{Plan, Results, Workspace};
 pub use points::evaluate_points;
 pub use quantity::Quantity;
 pub use question::{Bins, Condition, Event, Question, Sampler, Sweep};
-pub use region::Region;
+pub use region::{Region, Regions};
 pub use self_test::self_test_difference;
 pub use sensitivity::{Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity, sensitivities, sensitivities_in};
 pub use survey::{Progress, Survey};

@@ -10,6 +10,7 @@ use crate::progress::{Interrupted, Silent};
 use crate::spectrum::Summary;
 use crate::statistics::Moments;
 use crate::surrogate::Surrogate;
+use std::f64::consts::TAU;
 use thiserror::Error;
 
 /// Samples of a pilot.
@@ -70,27 +71,31 @@ impl Pilot {
     }
 
     fn range(&self, quantity: Quantity) -> (f64, f64) {
-        let moments = self.moments(quantity);
-        let (lower, upper) = (moments.minimum(), moments.maximum());
+        let (moments, unit) = self.moments(quantity);
+        let (lower, upper) = (unit * moments.minimum(), unit * moments.maximum());
         let narrowest = NARROWEST * lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE / NARROWEST);
         if upper - lower >= narrowest { (lower, upper) } else { (lower - narrowest, upper + narrowest) }
     }
 
-    fn moments(&self, quantity: Quantity) -> &Moments {
+    /// Moments, and what to multiply their numbers by.
+    fn moments(&self, quantity: Quantity) -> (&Moments, f64) {
         let Self(summary) = self;
         match quantity {
-            Quantity::MaxRe => &summary.max_re,
-            Quantity::GrowthRate(mode) => &summary.modes[mode].growth_rate,
-            Quantity::AngularFrequency(mode) => &summary.modes[mode].angular_frequency,
-            Quantity::DampingRatio(mode) => &summary.modes[mode].damping_ratio,
-            Quantity::Component(id) => &summary.components[id],
+            Quantity::MaxRe => (&summary.max_re, 1.0),
+            Quantity::GrowthRate(mode) => (&summary.modes[mode].growth_rate, 1.0),
+            Quantity::AngularFrequency(mode) => (&summary.modes[mode].angular_frequency, 1.0),
+            Quantity::Frequency(mode) => (&summary.modes[mode].angular_frequency, 1.0 / TAU),
+            Quantity::DampingRatio(mode) => (&summary.modes[mode].damping_ratio, 1.0),
+            Quantity::Component(id) => (&summary.components[id], 1.0),
         }
     }
 }
 
-/// The nearest number above that is 1, 2 or 5 times a power of ten.
+/// The nearest number above that is 1, 2 or 5 times a power of ten. By decimal digits, which are the same on all machines, where
+/// logarithms and powers are not.
 fn readable(step: f64) -> f64 {
-    let power = 10f64.powf(step.log10().floor());
+    let digits = format!("{step:e}");
+    let power = digits.split_once('e').and_then(|(_, exponent)| format!("1e{exponent}").parse().ok()).unwrap_or(step);
     [1.0, 2.0, 5.0].into_iter().map(|factor| factor * power).find(|&readable| readable >= step).unwrap_or(10.0 * power)
 }
 

@@ -111,7 +111,8 @@ impl Plan {
     }
 
     /// Floating-point operations per point for the values of all components, a fused multiply-add counted as two: five per univariate
-    /// value, one per product, two per coefficient and two per parent of a component's terms. With several elements two per
+    /// value, one per product of a parent; in each component two per coefficient and two per parent, but that the coefficient of
+    /// a parent, which starts its sum, costs nothing, and the first in a sum without such a start one. With several elements two per
     /// input for the local variables, and those of the most expensive element. Roots and statistics are not counted.
     pub fn flops(&self) -> usize {
         let maps = if self.programs.len() > 1 { 2 * self.dimension } else { 0 };

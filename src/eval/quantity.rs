@@ -2,7 +2,9 @@
 
 use super::lanes::{LANES, Lanes};
 use super::plan::Results;
+use crate::spectrum::damping_ratio;
 use crate::surrogate::Surrogate;
+use std::f64::consts::TAU;
 
 /// A number that every sample has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +15,8 @@ pub enum Quantity {
     GrowthRate(usize),
     /// Im λ of a mode by position, in rad/s: `im_3`.
     AngularFrequency(usize),
+    /// Im λ/2π of a mode by position, in Hz: `frequency_3`.
+    Frequency(usize),
     /// Damping ratio −Re λ/|λ| of a mode by position: `damping_3`.
     DampingRatio(usize),
     /// A component by id: its own name.
@@ -30,6 +34,7 @@ impl Quantity {
         let modes = surrogate.modes().len();
         let mut all = vec![Self::MaxRe];
         all.extend((0..modes).flat_map(|mode| [Self::GrowthRate(mode), Self::AngularFrequency(mode)]));
+        all.extend((0..modes).map(Self::Frequency));
         all.extend((0..modes).map(Self::DampingRatio));
         let names: Vec<String> = all.iter().map(|quantity| quantity.name(surrogate)).collect();
         let components = (0..surrogate.component_count()).map(Self::Component);
@@ -44,6 +49,7 @@ impl Quantity {
             Self::MaxRe => "max_re".to_owned(),
             Self::GrowthRate(mode) => format!("re_{}", rank(mode)),
             Self::AngularFrequency(mode) => format!("im_{}", rank(mode)),
+            Self::Frequency(mode) => format!("frequency_{}", rank(mode)),
             Self::DampingRatio(mode) => format!("damping_{}", rank(mode)),
             Self::Component(id) => {
                 let components = surrogate.components();
@@ -59,6 +65,11 @@ impl Quantity {
             Self::MaxRe => results.max_re,
             Self::GrowthRate(mode) => results.growth_rates[mode],
             Self::AngularFrequency(mode) => results.angular_frequencies[mode],
+            Self::Frequency(mode) => {
+                let mut frequency = results.angular_frequencies[mode];
+                frequency.0.iter_mut().for_each(|value| *value *= 1.0 / TAU);
+                frequency
+            }
             Self::DampingRatio(mode) => damping_ratios(&results.growth_rates[mode], &results.angular_frequencies[mode]),
             Self::Component(id) => results.components[id],
         }
@@ -71,7 +82,7 @@ pub(super) fn damping_ratios(growth_rate: &Lanes, angular_frequency: &Lanes) -> 
     let mut ratios = Lanes::splat(0.0);
     for lane in 0..LANES {
         let (re, im) = (growth_rate.0[lane], angular_frequency.0[lane]);
-        ratios.0[lane] = -re / (re * re + im * im).sqrt();
+        ratios.0[lane] = damping_ratio(re, im);
     }
     ratios
 }

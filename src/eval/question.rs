@@ -88,7 +88,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Value number `number`, from 0, to 15 digits, which is how people write it; the last is exactly `to`.
+    /// Value number `number`, from 0, to 15 digits if steps are much larger: that is how people write it; the last is exactly `to`.
     pub fn value(&self, number: u32) -> f64 {
         let last = self.points.saturating_sub(1).max(1);
         match number {
@@ -96,7 +96,9 @@ impl Sweep {
             _ if number >= last => self.to,
             _ => {
                 let value = self.from + (self.to - self.from) * (f64::from(number) / f64::from(last));
-                format!("{value:.14e}").parse().unwrap_or(value)
+                let rounded = format!("{value:.14e}").parse().unwrap_or(value);
+                let step = (self.to - self.from).abs() / f64::from(last);
+                if (rounded - value).abs() < 1e-3 * step { rounded } else { value }
             }
         }
     }
@@ -117,7 +119,11 @@ pub struct Event {
 impl Event {
     /// As typed: `max_re<-1`.
     pub fn text(&self) -> String {
-        format!("{}{}{}", self.quantity, if self.below { '<' } else { '>' }, self.threshold)
+        let (side, size) = (if self.below { '<' } else { '>' }, self.threshold.abs());
+        match size != 0.0 && !(1e-5..1e15).contains(&size) {
+            true => format!("{}{side}{:e}", self.quantity, self.threshold),
+            false => format!("{}{side}{}", self.quantity, self.threshold),
+        }
     }
 }
 

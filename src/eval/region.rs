@@ -5,8 +5,8 @@ use super::question::Question;
 use super::survey_error::SurveyError;
 use crate::input::InputSpace;
 
-/// Points of all sweeps together, at most: their counts are kept in memory.
-const MOST_CELLS: u64 = 1 << 18;
+/// Replicates of all points of all sweeps together, at most: their counts are kept in memory, some 500 bytes each.
+const MOST_SERIES: u64 = 1 << 18;
 
 /// A box in the standardized domain: every input is confined to an interval, or fixed.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,52 +58,73 @@ impl Region {
     }
 }
 
-/// The box of every point of the sweeps, the last sweep varying fastest.
-pub(super) fn regions(inputs: &InputSpace, question: &Question) -> Result<Vec<Region>, SurveyError> {
-    let mut base = Region::whole(inputs.dimension());
-    let mut used = Vec::new();
-    let mut position = |name: &str| {
-        let found = inputs.names().position(|known| known == name);
-        let found = found.ok_or_else(|| SurveyError::unknown_input(name, inputs))?;
-        if used.contains(&found) {
-            return Err(SurveyError::InputTwice { input: name.to_owned() });
-        }
-        used.push(found);
-        Ok(found)
-    };
-    for condition in &question.conditions {
-        let input = position(&condition.input)?;
-        let lower = coordinate(inputs, input, condition.lower)?;
-        let upper = coordinate(inputs, input, condition.upper)?;
-        if condition.lower > condition.upper {
-            return Err(SurveyError::Inverted { condition: condition.clone() });
-        }
-        base.confine(input, lower, upper);
-    }
-    let mut cells = 1u64;
-    let mut regions = vec![base];
-    for sweep in &question.sweeps {
-        let input = position(&sweep.input)?;
-        if sweep.points < 2 {
-            return Err(SurveyError::TooFewSteps { sweep: sweep.clone() });
-        }
-        cells = cells.saturating_mul(u64::from(sweep.points));
-        if cells > MOST_CELLS {
-            return Err(SurveyError::TooManyCells { most: MOST_CELLS });
-        }
-        coordinate(inputs, input, sweep.from)?;
-        coordinate(inputs, input, sweep.to)?;
-        let values: Vec<f64> =
-            (0..sweep.points).map(|number| coordinate(inputs, input, sweep.value(number))).collect::<Result<_, _>>()?;
-        let at = |region: &Region, xi: f64| {
-            let mut region = region.clone();
-            region.confine(input, xi, xi);
-            region
+/// The boxes of all points of the sweeps, the last sweep varying fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Regions {
+    base: Region,
+    /// Swept inputs with their standardized values.
+    swept: Vec<(usize, Vec<f64>)>,
+}
+
+impl Regions {
+    /// The boxes of a question.
+    ///
+    /// # Errors
+    ///
+    /// [`SurveyError`]: an input that does not exist or is named twice, values outside the domain, too many points.
+    pub(super) fn new(inputs: &InputSpace, question: &Question) -> Result<Self, SurveyError> {
+        let mut used = Vec::new();
+        let mut position = |name: &str| {
+            let found = inputs.names().position(|known| known == name);
+            let found = found.ok_or_else(|| SurveyError::unknown_input(name, inputs))?;
+            if used.contains(&found) {
+                return Err(SurveyError::InputTwice { input: name.to_owned() });
+            }
+            used.push(found);
+            Ok(found)
         };
-        regions =
-            regions.iter().flat_map(|region| values.iter().map(|&xi| at(region, xi)).collect::<Vec<_>>()).collect();
+        let mut base = Region::whole(inputs.dimension());
+        for condition in &question.conditions {
+            let input = position(&condition.input)?;
+            let lower = coordinate(inputs, input, condition.lower)?;
+            let upper = coordinate(inputs, input, condition.upper)?;
+            if condition.lower > condition.upper {
+                return Err(SurveyError::Inverted { condition: condition.clone() });
+            }
+            base.confine(input, lower, upper);
+        }
+        let mut series = u64::from(question.replicates.max(1));
+        let mut swept = Vec::with_capacity(question.sweeps.len());
+        for sweep in &question.sweeps {
+            let input = position(&sweep.input)?;
+            if sweep.points < 2 {
+                return Err(SurveyError::TooFewSteps { sweep: sweep.clone() });
+            }
+            series = series.saturating_mul(u64::from(sweep.points));
+            if series > MOST_SERIES {
+                return Err(SurveyError::TooManyCells { replicates: question.replicates.max(1), most: MOST_SERIES });
+            }
+            let values = (0..sweep.points).map(|number| coordinate(inputs, input, sweep.value(number)));
+            swept.push((input, values.collect::<Result<_, _>>()?));
+        }
+        Ok(Self { base, swept })
     }
-    Ok(regions)
+
+    /// Number of boxes.
+    pub fn count(&self) -> u64 {
+        self.swept.iter().map(|(_, values)| values.len() as u64).product()
+    }
+
+    /// Box number `number`, counted modulo [`Self::count`].
+    pub fn at(&self, number: usize) -> Region {
+        let (mut region, mut rest) = (self.base.clone(), number);
+        for (input, values) in self.swept.iter().rev() {
+            let xi = values[rest % values.len()];
+            region.confine(*input, xi, xi);
+            rest /= values.len();
+        }
+        region
+    }
 }
 
 /// The standardized coordinate of a value inside the domain.

@@ -24,6 +24,7 @@ impl Source {
         let key = seed_key(seed);
         match sampler {
             Sampler::MonteCarlo => Some(Self::MonteCarlo { seed }),
+            Sampler::Sobol if points > SobolSequence::PERIOD => None,
             Sampler::Sobol => SobolSequence::new(dimension, key, replicate).map(Self::Sobol),
             Sampler::LatinHypercube => {
                 LatinHypercubeSampler::new(points, dimension, key, replicate).map(Self::LatinHypercube)

@@ -11,7 +11,7 @@ use super::plan::{Plan, Results};
 use super::points::Evaluator;
 use super::quantity::Quantity;
 use super::question::{Bins, Question, Sampler};
-use super::region::{Region, regions};
+use super::region::{Region, Regions};
 use super::source::{Drawing, Source};
 use super::survey_error::SurveyError;
 use super::tally::{Adding, Gathering, Tally, Watch};
@@ -54,8 +54,8 @@ pub struct Survey<'a> {
     surrogate: &'a Surrogate,
     plan: Plan,
     layout: Layout,
-    /// One per point of the sweeps.
-    regions: Vec<Region>,
+    /// One box per point of the sweeps.
+    regions: Regions,
     /// One per replicate.
     sources: Vec<Source>,
     watches: Vec<Watch>,
@@ -89,8 +89,11 @@ impl<'a> Survey<'a> {
         question: &'a Question,
         instructions: InstructionSet,
     ) -> Result<Self, SurveyError> {
-        let regions = regions(&surrogate.inputs, question)?;
-        let (cells, samples) = (regions.len() as u64, question.samples);
+        let regions = Regions::new(&surrogate.inputs, question)?;
+        if let Some(&level) = question.quantile_levels.iter().find(|level| !(0.0..=1.0).contains(*level)) {
+            return Err(SurveyError::Level { level });
+        }
+        let (cells, samples) = (regions.count(), question.samples);
         if samples.checked_mul(cells).is_none() {
             return Err(SurveyError::TooManySamples { cells, samples });
         }
@@ -119,7 +122,7 @@ impl<'a> Survey<'a> {
     }
 
     /// The boxes that samples are drawn from: one, or one for each point of the sweeps.
-    pub fn regions(&self) -> &[Region] {
+    pub fn regions(&self) -> &Regions {
         &self.regions
     }
 
@@ -167,8 +170,8 @@ impl<'a> Survey<'a> {
     }
 
     /// Writes the coordinates of samples into lanes.
-    fn draw(&self, cell: usize, replicate: usize, first: u64, points: &mut [Lanes]) {
-        let (source, region) = (&self.sources[replicate], &self.regions[cell]);
+    fn draw(&self, region: &Region, replicate: usize, first: u64, points: &mut [Lanes]) {
+        let source = &self.sources[replicate];
         self.plan.instructions().run(Drawing { source, region, first, points });
     }
 }
@@ -197,7 +200,8 @@ impl<'s> Worker<'s> {
         let Layout { components, modes, .. } = survey.layout;
         let shifts = survey.surrogate.decision.band_shifts();
         let mut gathering = Gathering::new(components, modes, shifts, &survey.watches);
-        let draw = |start, points: &mut [_]| survey.draw(cell, replicate, samples.start + start as u64, points);
+        let region = survey.regions.at(cell);
+        let draw = |start, points: &mut [_]| survey.draw(&region, replicate, samples.start + start as u64, points);
         let add = |results: &Results, lanes| {
             survey.plan.instructions().run(Adding { gathering: &mut gathering, results, lanes });
             for (histogram, (quantity, bins)) in histograms.iter_mut().zip(&survey.binned) {
@@ -206,25 +210,25 @@ impl<'s> Worker<'s> {
         };
         self.evaluator.each_block(count, draw, add);
         if !gathering.is_finite() {
-            return Err(self.not_finite(cell, replicate, samples));
+            return Err(self.not_finite(&region, replicate, samples));
         }
         observer.advance(count as u64);
         Ok(gathering.tally())
     }
 
     /// Names the first sample whose max Re λ is not finite.
-    fn not_finite(&mut self, cell: usize, replicate: usize, samples: Range<u64>) -> EvalError {
+    fn not_finite(&mut self, region: &Region, replicate: usize, samples: Range<u64>) -> EvalError {
         let (survey, inputs) = (self.survey, &self.survey.surrogate.inputs);
         let count = (samples.end - samples.start) as usize;
         let (mut seen, mut found) = (0, None);
-        let draw = |start, points: &mut [_]| survey.draw(cell, replicate, samples.start + start as u64, points);
+        let draw = |start, points: &mut [_]| survey.draw(region, replicate, samples.start + start as u64, points);
         self.evaluator.each_block(count, draw, |results, lanes| {
             let bad = results.max_re.0[..lanes].iter().position(|max_re| !max_re.is_finite());
             found = found.or(bad.map(|lane| seen + lane));
             seen += LANES;
         });
         let mut points = vec![Lanes::splat(0.0); inputs.dimension()];
-        survey.draw(cell, replicate, samples.start + found.unwrap_or(0) as u64, &mut points);
+        survey.draw(region, replicate, samples.start + found.unwrap_or(0) as u64, &mut points);
         let point: Vec<f64> = points.iter().map(|coordinate| coordinate.0[0]).collect();
         EvalError::NotFinite { point: inputs.describe(&inputs.physical(&point)) }
     }
@@ -237,6 +241,12 @@ impl Drop for Worker<'_> {
     }
 }
 
+/// Of the two powers of two around `number` the nearer one.
+fn nearest_power_of_two(number: u64) -> u64 {
+    let below = 1u64 << number.max(1).ilog2();
+    if number - below > below / 2 { below.saturating_mul(2) } else { below }
+}
+
 /// One source per replicate, and the number of points of each.
 fn sources(surrogate: &Surrogate, question: &Question) -> Result<(Vec<Source>, u64), SurveyError> {
     let Question { samples, sampler, replicates, seed, .. } = *question;
@@ -247,13 +257,16 @@ fn sources(surrogate: &Surrogate, question: &Question) -> Result<(Vec<Source>, u
     if sampler == Sampler::MonteCarlo && replicates > 1 {
         return Err(SurveyError::ReplicatesOfMonteCarlo);
     }
+    if sampler != Sampler::MonteCarlo && replicates < 2 {
+        return Err(SurveyError::TooFewReplicates);
+    }
     if replicates > Survey::MOST_REPLICATES {
         return Err(SurveyError::TooManyReplicates { replicates, most: Survey::MOST_REPLICATES });
     }
     if !samples.is_multiple_of(u64::from(replicates)) {
         let replicates = u64::from(replicates);
         let each = samples.div_ceil(replicates);
-        let each = if sampler == Sampler::Sobol { each.checked_next_power_of_two().unwrap_or(each) } else { each };
+        let each = if sampler == Sampler::Sobol { nearest_power_of_two(each) } else { each };
         return Err(SurveyError::NotDivisible { samples, replicates, better: each.saturating_mul(replicates) });
     }
     let (samples, dimension) = (samples / u64::from(replicates), surrogate.inputs.dimension());

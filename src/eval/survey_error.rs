@@ -15,6 +15,15 @@ pub enum SurveyError {
     /// Independent samples need no replicates.
     #[error("Monte Carlo needs no replicates; leave them out, or choose the sampler sobol or latin-hypercube")]
     ReplicatesOfMonteCarlo,
+    /// One randomisation, whose error nobody knows.
+    #[error("a single randomisation says nothing of its own error; use 2 replicates or more")]
+    TooFewReplicates,
+    /// Probabilities outside 0 and 1.
+    #[error("a quantile is at a probability from 0 to 1, not {level}")]
+    Level {
+        /// As asked.
+        level: f64,
+    },
     /// More replicates than memory should hold.
     #[error("{replicates} replicates are more than {most}; use fewer, 16 for example")]
     TooManyReplicates {
@@ -101,8 +110,10 @@ pub enum SurveyError {
         sweep: Sweep,
     },
     /// More points than memory should hold.
-    #[error("the sweeps have more than {most} points together; use fewer")]
+    #[error("the sweeps have more than {most} points together{}; use fewer", of_replicates(*replicates))]
     TooManyCells {
+        /// Replicates of each point.
+        replicates: u32,
         /// The limit.
         most: u64,
     },
@@ -126,6 +137,10 @@ pub enum SurveyError {
     /// A histogram for each point of a sweep.
     #[error("histograms and quantiles are of one set of samples, not of a sweep; ask for them without it")]
     HistogramOfSweep,
+}
+
+fn of_replicates(replicates: u32) -> String {
+    if replicates > 1 { format!(", with {replicates} replicates each") } else { String::new() }
 }
 
 impl SurveyError {

@@ -206,8 +206,9 @@ impl Sums {
 
     fn moments(&self, count: u64) -> Moments {
         let sum = |parts: &[f64; PARTS]| parts.iter().sum::<f64>();
-        let minimum = self.minimum.iter().copied().fold(f64::INFINITY, f64::min);
-        let maximum = self.maximum.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // Not f64::min and max, which may choose either of 0 and −0.
+        let minimum = self.minimum.iter().copied().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+        let maximum = self.maximum.iter().copied().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
         Moments::from_sums(count, self.shift, sum(&self.first), sum(&self.second), minimum, maximum)
     }
 }

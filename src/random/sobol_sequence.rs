@@ -43,6 +43,9 @@ impl SobolSequence {
     /// The largest number of dimensions: that of the table of direction numbers.
     pub const MAXIMUM_DIMENSION: usize = RECURRENCES.len() + 1;
 
+    /// The number of points after which they repeat.
+    pub const PERIOD: u64 = 1 << DIGITS;
+
     /// Replicate number `replicate` of the sequence in `dimension` dimensions under the seed `key`.
     ///
     /// Dimension j of a replicate is the same whatever the number of dimensions asked for. `None` if `dimension` is 0

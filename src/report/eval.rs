@@ -21,14 +21,22 @@ pub struct EvalReport {
     pub source: &'static str,
     /// Number of samples.
     pub samples: u64,
-    /// Whether these are all samples that were asked for; false after an interruption.
+    /// Number of samples that were asked for.
+    pub requested_samples: u64,
+    /// Whether these are all samples, and all else that was asked for; false after an interruption.
     pub complete: bool,
+    /// How many parts were put together.
+    #[serde(skip)]
+    pub merged_parts: Option<usize>,
     /// Seed of the samples.
     pub seed: u64,
     /// How samples are drawn.
     pub sampler: &'static str,
-    /// Independent randomisations that the samples are divided among.
+    /// Independent randomisations that the samples are divided among; those that are complete.
     pub replicates: u32,
+    /// Randomisations that were asked for.
+    #[serde(skip)]
+    pub requested_replicates: u32,
     /// Inputs that are confined or fixed.
     pub conditions: Vec<Condition>,
     /// Number of stable samples, max Re λ < 0.
@@ -127,7 +135,7 @@ pub struct SobolReport {
     pub total: f64,
 }
 
-/// A quantile.
+/// A quantile of residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct QuantileReport {
     /// Probability to be undercut.
@@ -147,12 +155,14 @@ pub struct Asked<'a> {
     pub answer: &'a Answer,
     /// Wall-clock time of the samples.
     pub elapsed_seconds: f64,
+    /// How many parts were put together, if the samples were not evaluated here.
+    pub merged_parts: Option<usize>,
 }
 
 impl EvalReport {
     /// The report of a surrogate's samples; `None` if there are none.
     pub fn of_surrogate(asked: Asked<'_>, indices: Option<&Sensitivities>) -> Option<Self> {
-        let Asked { surrogate, question, answer, elapsed_seconds } = asked;
+        let Asked { surrogate, question, answer, elapsed_seconds, merged_parts } = asked;
         let cell = answer.cells.first()?;
         let (name, summary) = (&surrogate.provenance.study_name, &cell.total.summary);
         let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, question.seed, elapsed_seconds);
@@ -165,11 +175,14 @@ impl EvalReport {
         let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
         report.complete = answer.is_complete;
         report.sampler = question.sampler.name();
-        report.replicates = cell.replicates.len() as u32;
+        report.requested_samples = question.samples;
+        report.replicates = cell.replicates.len().max(1) as u32;
+        report.requested_replicates = question.replicates;
+        report.merged_parts = merged_parts;
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
         report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, share.interval);
-        report.sureness.replicates = cell.replicates.len() as u64;
+        report.sureness.replicates = cell.replicates.len().max(1) as u64;
         if !is_whole {
             report.sureness.confine();
         }
@@ -215,10 +228,13 @@ impl EvalReport {
             study: study.to_owned(),
             source,
             samples: stable.samples,
+            requested_samples: stable.samples,
             complete: true,
+            merged_parts: None,
             seed,
             sampler: Sampler::MonteCarlo.name(),
             replicates: 1,
+            requested_replicates: 1,
             conditions: Vec::new(),
             stable_samples: stable.hits,
             stable_proportion: stable.value(),

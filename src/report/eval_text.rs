@@ -10,8 +10,16 @@ use std::fmt::{self, Write};
 /// Components side by side in a table of Sobol' indices: what fits a terminal.
 const SOBOL_COLUMNS: usize = 4;
 
+/// How long samples took, or how many parts they come from.
+pub(super) fn pace(samples: f64, seconds: f64, merged_parts: Option<usize>) -> String {
+    match merged_parts {
+        Some(parts) => format!("from {parts} parts"),
+        None => format!("in {seconds:.2} s ({} per second)", rounded(samples / seconds.max(1e-9))),
+    }
+}
+
 /// A rate as a count with two significant digits: 6 600 000.
-pub(super) fn rounded(rate: f64) -> String {
+fn rounded(rate: f64) -> String {
     let unit = 10f64.powf(rate.max(10.0).log10().floor() - 1.0);
     count(((rate / unit).round() * unit) as u64)
 }
@@ -24,17 +32,9 @@ impl Statistics {
 
 impl fmt::Display for EvalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rate = self.samples as f64 / self.elapsed_seconds.max(1e-9);
-        writeln!(
-            f,
-            "{}: {} samples of the {} in {:.2} s ({} per second), seed {}\n",
-            self.study,
-            count(self.samples),
-            self.source,
-            self.elapsed_seconds,
-            rounded(rate),
-            self.seed
-        )?;
+        let how = pace(self.samples as f64, self.elapsed_seconds, self.merged_parts);
+        let (study, samples) = (&self.study, count(self.samples));
+        writeln!(f, "{study}: {samples} samples of the {} {how}, seed {}\n", self.source, self.seed)?;
         self.write_circumstances(f)?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         let modes: Vec<String> = self.modes.iter().map(|mode| mode.mode.to_string()).collect();
@@ -55,16 +55,19 @@ impl fmt::Display for EvalReport {
         writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
         if let Some((low, high)) = self.central_residuals() {
             let [low, high] = [low, high].map(|value| significant(value, 3));
+            let place = if self.sureness.is_confined { " in all of the domain" } else { "" };
             writeln!(
                 f,
-                "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out"
+                "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out{place}"
             )?;
         }
         writeln!(f, "\n{}", self.mode_table())?;
         write!(f, "{}", self.component_table())?;
         writeln!(f, "re in 1/s, im in rad/s")?;
         if let Some(table) = quantiles_table(&self.quantiles) {
-            write!(f, "\n{table}")?;
+            let note =
+                "found by counting in bins of the width in the last column; frequency in Hz, im in rad/s, re in 1/s";
+            writeln!(f, "\n{table}{note}")?;
         }
         self.histograms.iter().try_for_each(|histogram| write!(f, "\n{}", histogram_text(histogram)))?;
         if let Some(sensitivity) = &self.sensitivity {
@@ -85,17 +88,21 @@ impl EvalReport {
     /// What is not plain about these samples.
     fn write_circumstances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.complete {
-            writeln!(f, "  incomplete             interrupted before the last samples")?;
-        }
-        if self.replicates > 1 {
-            let points = count(self.samples / u64::from(self.replicates));
+            let (done, asked) = (count(self.samples), count(self.requested_samples));
             writeln!(
                 f,
-                "  sampler                {}, {} replicates of {points} points",
-                self.sampler, self.replicates
+                "  incomplete             interrupted after {done} of {asked} samples; what takes all of them is left out"
             )?;
-        } else if self.sampler != Sampler::MonteCarlo.name() {
-            writeln!(f, "  sampler                {}", self.sampler)?;
+        }
+        if self.sampler != Sampler::MonteCarlo.name() {
+            let asked = self.requested_replicates;
+            let points = count(self.requested_samples / u64::from(asked.max(1)));
+            let done = match self.replicates {
+                done if done == asked => format!("{asked} replicates of {points} points"),
+                1 => format!("not two of {asked} replicates of {points} points: judged as if points were random"),
+                done => format!("{done} of {asked} replicates of {points} points"),
+            };
+            writeln!(f, "  sampler                {}, {done}", self.sampler)?;
         }
         if !self.conditions.is_empty() {
             writeln!(f, "  where                  {}", conditions_text(&self.conditions))?;

@@ -92,7 +92,11 @@ impl fmt::Display for SensitivityReport {
                 cell(input.stability.map(|pair| pair.total)),
             ]);
         }
-        writeln!(f, "\n{table}share of what decides stability that an input causes alone / in all, ± at 95 %")
+        writeln!(
+            f,
+            "\n{table}share of what decides stability that an input causes alone / in all, estimated, ± at 95 %: the first can come \
+             out above the total within that"
+        )
     }
 }
 
@@ -151,7 +155,8 @@ impl fmt::Display for CriticalReport {
         writeln!(f, "  stable throughout      {:.3} %", 100.0 * self.never)?;
         writeln!(f, "  unstable from start    {:.3} %", 100.0 * self.unstable_from_start)?;
         let (mean, minimum, maximum) = (value(self.mean), value(self.minimum), value(self.maximum));
-        writeln!(f, "  of the others          mean {mean}, {minimum} to {maximum}\n")?;
+        let start = if self.unstable_from_start > 0.0 { "; the lower bound for those unstable from start" } else { "" };
+        writeln!(f, "  critical values        mean {mean}, {minimum} to {maximum}{start}\n")?;
         let mut columns = vec![("share unstable at or below", Align::Left)];
         let levels: Vec<String> = self.quantiles.iter().map(|q| format!("{} %", 100.0 * q.level)).collect();
         columns.extend(levels.iter().map(|level| (level.as_str(), Align::Right)));

@@ -121,7 +121,8 @@ impl Sureness {
             (Some(band), error) => {
                 let error =
                     error.map_or(String::new(), |error| format!("; {}", error_text(error, self.of_modes_left_out)));
-                format!("{}   {} of points left out{error}", range(band), level(band))
+                let place = if self.is_confined { " in all of the domain" } else { "" };
+                format!("{}   {} of points left out{place}{error}", range(band), level(band))
             }
         };
         let verified = match verified_bound {

@@ -150,7 +150,7 @@ pub(super) fn histogram_text(histogram: &HistogramReport) -> String {
     let mut table =
         Table::new(&[("from", Align::Right), ("to", Align::Right), ("samples", Align::Right), ("", Align::Left)]);
     if *below > 0 {
-        table.row([String::new(), plain(*lower), count(*below), String::new()]);
+        table.row(["below".to_owned(), plain(*lower), count(*below), String::new()]);
     }
     for (number, &samples) in counts.iter().enumerate() {
         let edge = |number: usize| plain(rounded_to(lower + width * number as f64, width));
@@ -158,7 +158,7 @@ pub(super) fn histogram_text(histogram: &HistogramReport) -> String {
         table.row([edge(number), edge(number + 1), count(samples), "█".repeat(bar)]);
     }
     if *above > 0 {
-        table.row([plain(*upper), String::new(), count(*above), String::new()]);
+        table.row(["above".to_owned(), plain(*upper), count(*above), String::new()]);
     }
     format!("histogram of {quantity}\n{table}")
 }

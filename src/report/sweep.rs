@@ -1,12 +1,14 @@
 //! The stability proportion along one input, or over two.
 
 use super::charts::short;
+use super::eval::{Asked, QuantileReport};
+use super::eval_text::pace;
 use super::survey::{EventReport, LEVEL, conditions_text, events};
-use super::table::{Align, Table, count, plain};
-use crate::eval::{Answer, Cell, Condition, Question, Sweep};
-use crate::plot::{Axis, Cells, Chart, Color, Marks, Series, sheet};
+use super::table::{Align, Table, count, plain, significant};
+use crate::eval::{Cell, Condition, Sampler, Sweep};
+use crate::plot::{Axis, Cells, Chart, Color, Marks, Series, Symbol, sheet};
 use crate::statistics::Interval;
-use crate::surrogate::Surrogate;
+use crate::surrogate::Decision;
 use serde::Serialize;
 use std::fmt;
 
@@ -26,6 +28,8 @@ pub struct SweepReport {
     pub source: &'static str,
     /// Whether all points are there; false after an interruption.
     pub complete: bool,
+    /// Modes by whose growth rates stability is judged.
+    pub modes: Vec<usize>,
     /// Samples at each point: the same at all of them but for the inputs that are swept.
     pub samples: u64,
     /// Seed of the samples.
@@ -40,6 +44,14 @@ pub struct SweepReport {
     pub sweeps: Vec<Sweep>,
     /// The points, the last sweep varying fastest.
     pub points: Vec<SweepPoint>,
+    /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file: what the intervals do not hold.
+    pub max_re_residuals: Vec<QuantileReport>,
+    /// Files that were written.
+    #[serde(skip)]
+    pub files: Vec<String>,
+    /// How many parts were put together.
+    #[serde(skip)]
+    pub merged_parts: Option<usize>,
     /// Wall-clock time.
     pub elapsed_seconds: f64,
 }
@@ -53,22 +65,35 @@ pub struct SweepPoint {
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
+    /// Standard error of the share.
+    pub standard_error: f64,
     /// Interval of the share: what the finite number of samples leaves open.
     pub interval: Interval,
+    /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves open; null if
+    /// unknown.
+    pub surrogate_band: Option<Interval>,
     /// Other events that were counted.
     pub events: Vec<EventReport>,
 }
 
 impl SweepReport {
     /// The report of an answer to a question with sweeps.
-    pub fn new(surrogate: &Surrogate, question: &Question, answer: &Answer, elapsed_seconds: f64) -> Self {
+    pub fn new(asked: Asked<'_>) -> Self {
+        let Asked { surrogate, question, answer, elapsed_seconds, merged_parts } = asked;
+        let residuals = &surrogate.decision.max_re_residuals;
+        let band = |cell: &Cell| {
+            let [upper, lower] = [0, 1].map(|k| cell.share(LEVEL, |tally| tally.summary.stable_if_shifted[k]).value);
+            (!residuals.is_empty()).then_some(Interval { lower, upper, level: Decision::BAND_LEVEL })
+        };
         let point = |(number, cell): (usize, &Cell)| {
             let share = cell.share(LEVEL, |tally| tally.summary.stable);
             SweepPoint {
                 values: values(&question.sweeps, number),
                 stable_samples: cell.total.summary.stable,
                 stable_proportion: share.value,
+                standard_error: share.standard_error,
                 interval: share.interval,
+                surrogate_band: band(cell),
                 events: events(question, cell),
             }
         };
@@ -76,6 +101,7 @@ impl SweepReport {
             study: surrogate.provenance.study_name.clone(),
             source: "surrogate",
             complete: answer.is_complete,
+            modes: surrogate.modes(),
             samples: question.samples,
             seed: question.seed,
             sampler: question.sampler.name(),
@@ -83,11 +109,15 @@ impl SweepReport {
             conditions: question.conditions.clone(),
             sweeps: question.sweeps.clone(),
             points: answer.cells.iter().enumerate().map(point).collect(),
+            max_re_residuals: residuals.iter().map(|q| QuantileReport { level: q.level, value: q.value }).collect(),
+            files: Vec::new(),
+            merged_parts,
             elapsed_seconds,
         }
     }
 
-    /// The points as CSV: values, samples, stable samples, stable proportion, its interval, the share of each event.
+    /// The points as CSV: values of the swept inputs, bounds of those that are confined, samples, stable samples, stable proportion, its
+    /// interval, the band of the surrogate, the share of each event.
     ///
     /// # Errors
     ///
@@ -95,14 +125,22 @@ impl SweepReport {
     pub fn to_csv(&self) -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut header: Vec<String> = self.sweeps.iter().map(|sweep| sweep.input.clone()).collect();
-        header.extend(["samples", "stable_samples", "stable_proportion", "lower", "upper"].map(str::to_owned));
+        let bounds = |condition: &Condition| ["lower", "upper"].map(|end| format!("{}_{end}", condition.input));
+        header.extend(self.conditions.iter().flat_map(bounds));
+        let columns = ["samples", "stable_samples", "stable_proportion", "lower", "upper", "band_lower", "band_upper"];
+        header.extend(columns.map(str::to_owned));
         header.extend(self.points.first().iter().flat_map(|point| &point.events).map(|event| event.event.clone()));
         writer.write_record(&header)?;
         for point in &self.points {
             let mut row: Vec<String> = point.values.iter().map(f64::to_string).collect();
+            row.extend(
+                self.conditions.iter().flat_map(|condition| [condition.lower, condition.upper].map(|x| x.to_string())),
+            );
             row.extend([self.samples, point.stable_samples].map(|number| number.to_string()));
             let Interval { lower, upper, .. } = point.interval;
             row.extend([point.stable_proportion, lower, upper].map(|share| share.to_string()));
+            let band = point.surrogate_band.map_or([None; 2], |band| [Some(band.lower), Some(band.upper)]);
+            row.extend(band.map(|share| share.map_or(String::new(), |share| share.to_string())));
             row.extend(point.events.iter().map(|event| event.proportion.to_string()));
             writer.write_record(&row)?;
         }
@@ -129,31 +167,51 @@ fn values(sweeps: &[Sweep], number: usize) -> Vec<f64> {
 
 impl fmt::Display for SweepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let samples = self.samples as f64 * self.points.len() as f64;
-        let rate = super::eval_text::rounded(samples / self.elapsed_seconds.max(1e-9));
+        let (points, each) = (count(self.points.len() as u64), count(self.samples));
+        let how = pace(self.samples as f64 * self.points.len() as f64, self.elapsed_seconds, self.merged_parts);
         writeln!(
             f,
-            "{}: {} points with {} samples each of the surrogate in {:.2} s ({rate} per second), seed {}",
-            self.study,
-            count(self.points.len() as u64),
-            count(self.samples),
-            self.elapsed_seconds,
-            self.seed
+            "{}: {points} points with {each} samples each of the surrogate {how}, seed {}\n",
+            self.study, self.seed
         )?;
         if !self.complete {
-            writeln!(f, "incomplete: interrupted before the last points")?;
+            let all: u64 = self.sweeps.iter().map(|sweep| u64::from(sweep.points)).product();
+            let tables = "no table or chart is written";
+            writeln!(f, "  incomplete             interrupted after {points} of {} points; {tables}", count(all))?;
+        }
+        if self.sampler != Sampler::MonteCarlo.name() {
+            writeln!(f, "  sampler                {}, {} replicates", self.sampler, self.replicates)?;
         }
         if !self.conditions.is_empty() {
-            writeln!(f, "where {}", conditions_text(&self.conditions))?;
+            writeln!(f, "  where                  {}", conditions_text(&self.conditions))?;
         }
+        let modes: Vec<String> = self.modes.iter().map(usize::to_string).collect();
+        writeln!(f, "  judged by              modes {}", modes.join(", "))?;
+        writeln!(f, "  surrogate band         {}\n", self.width_of_band())?;
         match self.sweeps.len() {
-            2 => self.write_map(f),
-            _ => write!(f, "\n{}", self.table()),
+            2 => self.write_map(f)?,
+            _ => writeln!(f, "{}from, to: 95 % sampling interval", self.table())?,
+        }
+        match self.files.is_empty() {
+            true => Ok(()),
+            false => writeln!(f, "\nwritten to {}", self.files.join(", ")),
         }
     }
 }
 
 impl SweepReport {
+    /// How much the band of the surrogate can differ from the share, at the worst point.
+    fn width_of_band(&self) -> String {
+        let bands = self.points.iter().filter_map(|point| Some((point.stable_proportion, point.surrogate_band?)));
+        let widest = bands.map(|(share, band)| (band.upper - share).max(share - band.lower)).reduce(f64::max);
+        match widest {
+            Some(widest) => {
+                format!("up to {} % away from the share, at the worst point", significant(100.0 * widest, 2))
+            }
+            None => "unknown: no point could be left out".to_owned(),
+        }
+    }
+
     /// One line per point, with a bar.
     fn table(&self) -> Table {
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
@@ -168,7 +226,7 @@ impl SweepReport {
             let mut row: Vec<String> = point.values.iter().map(|&value| plain(value)).collect();
             row.extend([point.stable_proportion, point.interval.lower, point.interval.upper].map(percent));
             row.extend(point.events.iter().map(|event| percent(event.proportion)));
-            row.push("█".repeat((LONGEST_BAR * point.stable_proportion).round() as usize));
+            row.push("█".repeat((LONGEST_BAR * point.stable_proportion.clamp(0.0, 1.0)).round() as usize));
             table.row(row);
         }
         table
@@ -181,7 +239,7 @@ impl SweepReport {
         let (row_step, column_step) = (vertical.points.div_ceil(MOST_ROWS), horizontal.points.div_ceil(MOST_COLUMNS));
         let label = |row: usize| plain(vertical.value(row as u32));
         let width = (0..vertical.points as usize).map(|row| label(row).chars().count()).max().unwrap_or(0);
-        writeln!(f, "\n{:>width$}   stable: 0 to 9 tenths, · none, # all", vertical.input)?;
+        writeln!(f, "{:>width$}   stable: 0 to 9 tenths, · none, # all", vertical.input)?;
         let rows = self.points.chunks(columns).enumerate().filter(|(row, _)| row.is_multiple_of(row_step as usize));
         for (row, points) in rows.collect::<Vec<_>>().into_iter().rev() {
             let shown = points.iter().step_by(column_step as usize);
@@ -220,24 +278,49 @@ pub fn sweep_chart(report: &SweepReport) -> String {
     sheet("", &chart.description.clone(), &[chart], 1)
 }
 
+/// " where k_p = 15800000"
+fn title_of_conditions(report: &SweepReport) -> String {
+    match report.conditions.is_empty() {
+        true => String::new(),
+        false => format!(" where {}", conditions_text(&report.conditions)),
+    }
+}
+
+/// Points of a curve up to which each is marked.
+const MARKED: usize = 51;
+
 fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
-    let line = |part: fn(&SweepPoint) -> f64| {
-        let points = report.points.iter().map(|point| [short(point.values[0]), short(100.0 * part(point))]);
-        Marks::Line(points.collect())
+    let points = |part: fn(&SweepPoint) -> f64| -> Vec<[f64; 2]> {
+        report.points.iter().map(|point| [short(point.values[0]), short(100.0 * part(point))]).collect()
     };
+    let line = |part: fn(&SweepPoint) -> f64| Marks::Line(points(part));
+    let band = |end: fn(Interval) -> f64| {
+        let ends = report
+            .points
+            .iter()
+            .filter_map(|point| Some([short(point.values[0]), short(100.0 * end(point.surrogate_band?))]));
+        Marks::Line(ends.collect())
+    };
+    let mut series = vec![
+        Series::new("surrogate band", Color::Orange, band(|band| band.lower)),
+        Series::new("surrogate band", Color::Orange, band(|band| band.upper)),
+        Series::new("95 % interval", Color::Gray, line(|point| point.interval.lower)),
+        Series::new("95 % interval", Color::Gray, line(|point| point.interval.upper)),
+        Series::new("stable", Color::Blue, line(|point| point.stable_proportion)),
+    ];
+    if report.points.len() <= MARKED {
+        let marks = Marks::Symbols(points(|point| point.stable_proportion), Symbol::Circle);
+        series.push(Series::new("stable", Color::Blue, marks));
+    }
     Chart {
-        title: format!("{}: stability over {}", report.study, sweep.input),
+        title: format!("{}: stability over {}{}", report.study, sweep.input, title_of_conditions(report)),
         description: format!(
             "Share of stable samples at {} values of {}, with its interval.",
             sweep.points, sweep.input
         ),
         x: Axis::linear(sweep.input.clone()),
         y: Axis::linear("stable, %").between(0.0, 100.0),
-        series: vec![
-            Series::new("95 % interval", Color::Gray, line(|point| point.interval.lower)),
-            Series::new("95 % interval", Color::Gray, line(|point| point.interval.upper)),
-            Series::new("stable", Color::Blue, line(|point| point.stable_proportion)),
-        ],
+        series,
         guides: Vec::new(),
     }
 }
@@ -250,13 +333,19 @@ fn map(report: &SweepReport, vertical: &Sweep, horizontal: &Sweep) -> Chart {
         values: report.points.iter().map(|point| point.stable_proportion).collect(),
     };
     Chart {
-        title: format!("{}: stability over {} and {}", report.study, vertical.input, horizontal.input),
+        title: format!(
+            "{}: stability over {} and {}{}",
+            report.study,
+            vertical.input,
+            horizontal.input,
+            title_of_conditions(report)
+        ),
         description: format!(
             "Share of stable samples at {} values of {} and {} of {}.",
             vertical.points, vertical.input, horizontal.points, horizontal.input
         ),
-        x: Axis::linear(horizontal.input.clone()),
-        y: Axis::linear(vertical.input.clone()),
+        x: Axis::linear(horizontal.input.clone()).between(horizontal.from, horizontal.to),
+        y: Axis::linear(vertical.input.clone()).between(vertical.from, vertical.to),
         series: vec![Series::new("stable", Color::Blue, Marks::Cells(cells))],
         guides: Vec::new(),
     }

@@ -11,5 +11,5 @@ pub use clusters::{ClusterError, clusters};
 pub use derivatives::ReducedSystem;
 pub use modes::{Spectrum, SpectrumError};
 pub use recombination::{Component, Output, OutputKind, is_equal_frequency, spectral_abscissa};
-pub use summary::{Block, ModeSummary, Summary};
+pub use summary::{Block, ModeSummary, Summary, damping_ratio};
 pub use target::{Modes, Target, components};

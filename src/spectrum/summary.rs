@@ -18,6 +18,13 @@ pub struct ModeSummary {
     pub unstable: u64,
 }
 
+/// Damping ratio −Re λ/|λ|; 0 for λ = 0.
+#[inline(always)]
+pub fn damping_ratio(re: f64, im: f64) -> f64 {
+    let square = re * re + im * im;
+    if square > 0.0 { -re / square.sqrt() } else { 0.0 }
+}
+
 /// Statistics of many samples. Parts merge in a fixed order to the same bits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -63,7 +70,7 @@ impl Summary {
             ModeSummary {
                 growth_rate: part(|lambda| lambda.re),
                 angular_frequency: part(|lambda| lambda.im),
-                damping_ratio: part(|lambda| -lambda.re / (lambda.re * lambda.re + lambda.im * lambda.im).sqrt()),
+                damping_ratio: part(|lambda| damping_ratio(lambda.re, lambda.im)),
                 unstable: lambdas.iter().filter(|lambda| lambda.re >= 0.0).count() as u64,
             }
         });

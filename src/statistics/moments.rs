@@ -104,8 +104,17 @@ impl Moments {
         let deviation = other.mean - self.mean;
         self.mean += deviation * (added / total);
         self.squares += other.squares + deviation * deviation * (before * added / total);
-        self.minimum = self.minimum.min(other.minimum);
-        self.maximum = self.maximum.max(other.maximum);
+        // Not f64::min and max, which may choose either of 0 and −0.
+        self.minimum = if other.minimum < self.minimum { other.minimum } else { self.minimum };
+        self.maximum = if other.maximum > self.maximum { other.maximum } else { self.maximum };
+    }
+
+    /// Whether these can be the moments of so many numbers: what this crate computes always are; what a file says need not be.
+    pub fn are_of(&self, count: u64) -> bool {
+        // A mean has one rounding per number and merge, which is less than this share of the range.
+        let slack = 1e-6 * (self.minimum.abs() + self.maximum.abs());
+        let holds_mean = self.minimum - slack <= self.mean && self.mean <= self.maximum + slack;
+        self.count == count && count > 0 && self.squares >= 0.0 && self.minimum <= self.maximum && holds_mean
     }
 
     /// How many numbers were seen.

@@ -3,6 +3,10 @@
 use super::proportion::{Interval, Proportion};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+/// Hits, or misses, of all replicates together below which their spread is no measure: with 16 replicates and independent samples
+/// Student's interval alone covers 88 to 93 % at 3 to 8 hits instead of 95 %.
+const FEW: u64 = 20;
+
 /// A proportion with what is not known of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Share {
@@ -18,6 +22,8 @@ impl Share {
     /// From replicates of equal size, whose samples need not be independent of each other, but replicates are. With the mean p̄ of
     /// their proportions and their standard deviation s, R of them: p̄ ± t s/√R with the quantile t of Student's law of R − 1 degrees
     /// of freedom, cut off at 0 and 1.
+    ///
+    /// Of few hits, or misses, the spread of replicates says little: the interval then holds Wilson's of all samples, too.
     ///
     /// A single replicate is taken for independent samples: standard error √(p(1 − p)/n), Wilson's interval. So are replicates that
     /// all agree: their spread says nothing then. That is cautious for samples that cover the domain more evenly than independent ones.
@@ -48,7 +54,13 @@ impl Share {
         }
         let standard_error = (squares / (count - 1.0) / count).sqrt();
         let half_width = quantile(count - 1.0, 0.5 + 0.5 * level) * standard_error;
-        let interval = Interval { lower: (value - half_width).max(0.0), upper: (value + half_width).min(1.0), level };
+        let mut interval =
+            Interval { lower: (value - half_width).max(0.0), upper: (value + half_width).min(1.0), level };
+        if pooled.hits.min(samples.saturating_sub(pooled.hits)) < FEW {
+            let wilson = pooled.wilson(level);
+            interval.lower = interval.lower.min(wilson.lower);
+            interval.upper = interval.upper.max(wilson.upper);
+        }
         Self { value, standard_error, interval }
     }
 }
@@ -78,6 +90,25 @@ mod tests {
             .count();
         // Four standard errors of 2000 repeats are 0.0195.
         assert!((0.93..=0.97).contains(&(covered as f64 / REPEATS as f64)), "{covered} of {REPEATS}");
+    }
+
+    #[test]
+    fn intervals_of_few_hits_cover_at_their_level() {
+        const REPEATS: u64 = 4000;
+        for expected in [1.0, 3.5, 5.0, 8.0] {
+            let truth = expected / (16.0 * 500.0);
+            let covered = (0..REPEATS)
+                .filter(|&repeat| {
+                    let mut stream = Stream::new(12, Purpose::Evaluation, repeat);
+                    let mut hits = || (0..500).filter(|_| stream.next_unit() < truth).count() as u64;
+                    let replicates: Vec<_> = (0..16).map(|_| Proportion { hits: hits(), samples: 500 }).collect();
+                    let interval = Share::of_replicates(&replicates, 0.95).interval;
+                    interval.lower <= truth && truth <= interval.upper
+                })
+                .count();
+            // Wilson's alone has 93 % in places.
+            assert!(covered as f64 > 0.93 * REPEATS as f64, "{expected} hits: {covered} of {REPEATS}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::super::eval_arguments::{Asked as AskedOptions, Eval, Pictures};
 use super::super::points::{Evaluated, PointsFile};
 use super::super::question::Shard;
 use super::super::{Context, Ending};
-use super::{PointsReport, interruptible, keep_inputs, keep_unmarked_files, read_surrogate};
+use super::{PointsReport, interruptible, keep_inputs, keep_results, keep_unmarked_files, read_surrogate};
 use crate::artifact::{check_writable, save};
 use crate::eval::{
     EvalError, Findings, Pilot, PilotError, Plan, Progress, Quantity, Question, Sampler, Survey, SurveyError,
@@ -39,7 +39,14 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
         );
     }
     let survey = Survey::new(&surrogate, &question, instructions)?;
-    check_pictures(&options.pictures, &question, &[&options.surrogate])?;
+    if question.sampler != Sampler::MonteCarlo && critical.is_some() {
+        bail!("--critical: critical values are found from random samples; leave out --sampler");
+    }
+    if options.part.is_some() && (options.pictures.table.is_some() || options.pictures.chart.is_some()) {
+        bail!("--part: a part has no table or chart; give --table and --chart to pcc merge");
+    }
+    let hint = "ask for one with --sweep INPUT=FROM:TO:POINTS";
+    check_pictures(&options.pictures, &question, &[&options.surrogate], hint)?;
     if let Some(file) = &options.part {
         return write_part(context, &survey, &surrogate, &question, options.shard, file, &options.surrogate);
     }
@@ -49,7 +56,8 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
     let (Progress::Complete(found) | Progress::Interrupted(found)) = &findings;
     let answer = found.answer(survey.layout());
     let elapsed_seconds = start.elapsed().as_secs_f64();
-    let asked = Asked { surrogate: &surrogate, question: &question, answer: &answer, elapsed_seconds };
+    let asked =
+        Asked { surrogate: &surrogate, question: &question, answer: &answer, elapsed_seconds, merged_parts: None };
     present(context, asked, &survey, critical, &options.pictures)
 }
 
@@ -63,10 +71,12 @@ pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, see
     let Progress::Complete(findings) = findings else { return Err(Interrupted.into()) };
     let answer = findings.answer(survey.layout());
     let elapsed_seconds = start.elapsed().as_secs_f64();
-    report(context, Asked { surrogate, question: &question, answer: &answer, elapsed_seconds }, &survey, None)
+    let asked = Asked { surrogate, question: &question, answer: &answer, elapsed_seconds, merged_parts: None };
+    let report = report(context, asked, &survey, None)?.ok_or(Interrupted)?;
+    if report.complete { Ok(report) } else { Err(Interrupted.into()) }
 }
 
-/// Prints an answer, and writes its pictures.
+/// Prints an answer, and writes its pictures if it is complete.
 pub(super) fn present(
     context: &Context,
     asked: Asked<'_>,
@@ -74,47 +84,59 @@ pub(super) fn present(
     critical: Option<usize>,
     pictures: &Pictures,
 ) -> anyhow::Result<Ending> {
-    let Asked { surrogate, question, answer, elapsed_seconds } = asked;
-    if answer.cells.is_empty() {
-        return Err(Interrupted.into());
-    }
-    if question.sweeps.is_empty() {
-        context.print(&report(context, asked, survey, critical)?)?;
+    let is_complete = if asked.question.sweeps.is_empty() {
+        let report = report(context, asked, survey, critical)?.ok_or(Interrupted)?;
+        context.print(&report)?;
+        report.complete
     } else {
-        let report = SweepReport::new(surrogate, question, answer, elapsed_seconds);
+        let mut report = SweepReport::new(asked);
         if report.complete {
-            save_pictures(&report, pictures)?;
+            report.files = save_pictures(&report, pictures)?;
         }
         context.print(&report)?;
-    }
-    Ok(if answer.is_complete { Ending::Done } else { Ending::Interrupted })
+        report.complete
+    };
+    Ok(if is_complete { Ending::Done } else { Ending::Interrupted })
 }
 
 /// Samples of the surrogate whose indices are estimated by pick-freeze: they cost r + 2 evaluations each, and their intervals are
 /// narrow enough.
 const SENSITIVITY_SAMPLES: u64 = 16_384;
 
+/// The report of all samples, with what else is asked for as far as there is time: an interruption leaves out the rest, and the report
+/// is not complete. `None` if there are no samples.
 fn report(
     context: &Context,
     asked: Asked<'_>,
     survey: &Survey<'_>,
     critical: Option<usize>,
-) -> anyhow::Result<EvalReport> {
+) -> anyhow::Result<Option<EvalReport>> {
     let Asked { surrogate, question, answer, .. } = asked;
-    let (region, seed) = (&survey.regions()[0], question.seed);
-    let failed = |error| failed(error, surrogate);
+    let (region, seed) = (&survey.regions().at(0), question.seed);
+    let base = question.samples.min(SENSITIVITY_SAMPLES);
     let mut indices = None;
     if answer.is_complete {
-        let base = question.samples.min(SENSITIVITY_SAMPLES);
-        indices = Some(sensitivities_in(surrogate, region, base, seed, &context.terminal).map_err(failed)?);
+        indices = until_interrupted(sensitivities_in(surrogate, region, base, seed, &context.terminal), surrogate)?;
     }
-    let mut report = EvalReport::of_surrogate(asked, indices.as_ref()).ok_or(Interrupted)?;
-    if let Some(input) = critical.filter(|_| answer.is_complete) {
-        let found =
-            critical_values_in(surrogate, region, input, question.samples, seed, &context.terminal).map_err(failed)?;
-        report.add_critical_values(surrogate, input, &found);
+    let Some(mut report) = EvalReport::of_surrogate(asked, indices.as_ref()) else { return Ok(None) };
+    report.complete &= indices.is_some();
+    if let Some(input) = critical.filter(|_| report.complete) {
+        let found = critical_values_in(surrogate, region, input, question.samples, seed, &context.terminal);
+        match until_interrupted(found, surrogate)? {
+            Some(found) => report.add_critical_values(surrogate, input, &found),
+            None => report.complete = false,
+        }
     }
-    Ok(report)
+    Ok(Some(report))
+}
+
+/// `None` for an interruption.
+fn until_interrupted<T>(result: Result<T, EvalError>, surrogate: &Surrogate) -> anyhow::Result<Option<T>> {
+    match result {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.is_interruption() => Ok(None),
+        Err(error) => Err(failed(error, surrogate)),
+    }
 }
 
 /// What is asked, in numbers.
@@ -200,30 +222,48 @@ pub(super) fn stable(findings: &Findings) -> u64 {
     findings.total().map_or(0, |tally| tally.summary.stable)
 }
 
-/// Refuses pictures that nothing would be drawn in, and files that must not be replaced.
-pub(super) fn check_pictures(pictures: &Pictures, question: &Question, inputs: &[&Path]) -> anyhow::Result<()> {
+/// Refuses pictures that nothing would be drawn in, and files that must not be replaced. `hint` says how to get a sweep.
+pub(super) fn check_pictures(
+    pictures: &Pictures,
+    question: &Question,
+    inputs: &[&Path],
+    hint: &str,
+) -> anyhow::Result<()> {
     for (option, file) in [("--table", &pictures.table), ("--chart", &pictures.chart)] {
         let Some(file) = file else { continue };
         if question.sweeps.is_empty() {
-            bail!("{option}: there is no sweep to write; ask for one with --sweep INPUT=FROM:TO:POINTS");
+            bail!("{option}: there is no sweep to write; {hint}");
         }
         keep_inputs(file, inputs)?;
+        keep_results(file)?;
         check_writable(file)?;
     }
-    if pictures.chart.is_some() && question.sweeps.len() > 2 {
+    let Some(chart) = &pictures.chart else { return Ok(()) };
+    if question.sweeps.len() > 2 {
         bail!("--chart: {} sweeps cannot be drawn; use one or two, or --table", question.sweeps.len());
+    }
+    if chart.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("svg")) {
+        bail!(
+            "--chart {0}: charts are drawn as SVG; name it {1}",
+            chart.display(),
+            chart.with_extension("svg").display()
+        );
     }
     Ok(())
 }
 
-fn save_pictures(report: &SweepReport, pictures: &Pictures) -> anyhow::Result<()> {
+/// The files that were written.
+fn save_pictures(report: &SweepReport, pictures: &Pictures) -> anyhow::Result<Vec<String>> {
+    let mut files = Vec::new();
     if let Some(file) = &pictures.table {
         save(file, &report.to_csv()?)?;
+        files.push(file.display().to_string());
     }
     if let Some(file) = &pictures.chart {
         save(file, sweep_chart(report).as_bytes())?;
+        files.push(file.display().to_string());
     }
-    Ok(())
+    Ok(files)
 }
 
 fn failed(error: EvalError, surrogate: &Surrogate) -> anyhow::Error {

@@ -21,37 +21,44 @@ pub(in super::super) fn merge(context: &Context, options: &Merge) -> anyhow::Res
         parts.push((name, part));
     }
     let whole = merge_parts(parts)?;
+    let survey = whole.survey()?;
+    let (found, all) = (whole.findings.chunks(), survey.layout().chunks());
+    let is_complete = found == (0..all);
     if let Some(file) = &options.part {
         keep_inputs(file, &files)?;
         keep_unmarked_files(file, MARK)?;
         check_writable(file)?;
-        save(file, &whole.to_bytes()?)?;
-        if !whole.is_complete() {
-            let survey = whole.survey()?;
-            let samples = survey.layout().samples_in(&whole.findings.chunks());
-            let report = MergeReport {
-                file: file.display().to_string(),
-                parts: files.len(),
-                samples,
-                of: survey.layout().samples(),
-                stable_samples: stable(&whole.findings),
-            };
-            context.print(&report)?;
-            return Ok(Ending::Done);
-        }
     }
-    let survey = whole.survey()?;
-    let (found, all) = (whole.findings.chunks(), survey.layout().chunks());
-    if found != (0..all) {
+    check_pictures(&options.pictures, &whole.question, &files, "these parts are of plain samples")?;
+    if !is_complete && (options.part.is_none() || options.pictures.table.is_some() || options.pictures.chart.is_some())
+    {
         let (place, missing) = match found.start {
             0 => ("after those of all parts", found.end..all),
             start => ("before those of all parts", 0..start),
         };
         return Err(PartError::Gap { place: place.to_owned(), missing, chunks: all }.into());
     }
-    check_pictures(&options.pictures, &whole.question, &files)?;
+    if let Some(file) = &options.part {
+        save(file, &whole.to_bytes()?)?;
+        if !is_complete {
+            context.print(&MergeReport {
+                file: file.display().to_string(),
+                parts: files.len(),
+                samples: survey.layout().samples_in(&found),
+                of: survey.layout().samples(),
+                stable_samples: stable(&whole.findings),
+            })?;
+            return Ok(Ending::Done);
+        }
+        context.say(&format!("written to {}", file.display()));
+    }
     let answer = whole.findings.answer(survey.layout());
-    let elapsed_seconds = start.elapsed().as_secs_f64();
-    let asked = Asked { surrogate: &whole.surrogate, question: &whole.question, answer: &answer, elapsed_seconds };
+    let asked = Asked {
+        surrogate: &whole.surrogate,
+        question: &whole.question,
+        answer: &answer,
+        elapsed_seconds: start.elapsed().as_secs_f64(),
+        merged_parts: Some(files.len()),
+    };
     present(context, asked, &survey, None, &options.pictures)
 }

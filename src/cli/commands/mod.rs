@@ -27,6 +27,7 @@ pub(super) use run::run;
 use super::arguments::Arguments;
 use super::{Ending, print};
 use crate::artifact::{self, Artifact};
+use crate::part::MARK;
 use crate::progress::Interrupted;
 use crate::study::Study;
 use anyhow::{Context as _, bail};
@@ -91,6 +92,19 @@ fn keep_unmarked_files(output: &Path, mark: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Refuses to replace a surrogate or a part of an evaluation by a table or a picture.
+fn keep_results(output: &Path) -> anyhow::Result<()> {
+    if !output.is_file() {
+        return Ok(());
+    }
+    let mut start = Vec::new();
+    let read = File::open(output).and_then(|file| file.take(64).read_to_end(&mut start));
+    if read.is_err() || artifact::looks_like_a_surrogate(&start) || start.starts_with(MARK.as_bytes()) {
+        bail!("{}: is a surrogate or a part of an evaluation; name another output", output.display());
+    }
+    Ok(())
+}
+
 fn read_study(path: &Path) -> anyhow::Result<Study> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LARGEST_STUDY + 1).read_to_end(&mut bytes));
@@ -108,7 +122,14 @@ fn read_study(path: &Path) -> anyhow::Result<Study> {
 }
 
 fn read_surrogate(path: &Path) -> anyhow::Result<Artifact> {
-    artifact::read(path).with_context(|| path.display().to_string())
+    artifact::read(path).or_else(|error| {
+        let mut start = Vec::new();
+        let read = File::open(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut start));
+        if read.is_ok() && start == MARK.as_bytes() {
+            bail!("{}: is a part of an evaluation; put all its parts together with pcc merge", path.display());
+        }
+        Err(error).with_context(|| path.display().to_string())
+    })
 }
 
 /// What `eval` and `reference` say after writing points.

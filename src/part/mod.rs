@@ -7,7 +7,7 @@
 //! # File format 1
 //!
 //! Two lines of JSON. The first is `{"pcc_part": 1, "length": …, "sha256": …}` with length in bytes and SHA-256 of the second, which
-//! holds the surrogate as in a JSON surrogate file, the question and the findings.
+//! holds the version of pcc, the surrogate as in a JSON surrogate file, the question and the findings.
 
 use crate::artifact::{self, Format, ReadError, WriteError};
 use crate::digest::sha256;
@@ -23,6 +23,9 @@ use thiserror::Error;
 
 /// Version of the file format.
 const VERSION: u64 = 1;
+
+/// Version of this program.
+const PROGRAM: &str = env!("CARGO_PKG_VERSION");
 
 /// What every part file starts with.
 pub const MARK: &str = "{\"pcc_part\":";
@@ -55,6 +58,8 @@ struct Header {
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Body {
+    /// Version of the program: another may draw or sum otherwise.
+    program: String,
     surrogate: String,
     question: Question,
     findings: Findings,
@@ -80,6 +85,12 @@ pub enum PartError {
     Version {
         /// Its version.
         found: u64,
+    },
+    /// Evaluated by another version of the program.
+    #[error("was evaluated by pcc {found}, and this is pcc {PROGRAM}; evaluate and merge with the same version")]
+    Program {
+        /// Its version.
+        found: String,
     },
     /// Shorter or longer than it says.
     #[error(
@@ -136,6 +147,12 @@ pub enum PartError {
         /// Number of all chunks.
         chunks: u64,
     },
+    /// A part that comes twice.
+    #[error("{name} is given twice; give every shard once")]
+    Twice {
+        /// The part.
+        name: String,
+    },
     /// Samples that two parts have.
     #[error("{first} and {second} have samples in common; give every shard once")]
     Overlap {
@@ -154,7 +171,12 @@ impl Part {
     /// [`PartError::NotFinite`], [`PartError::Write`].
     pub fn to_bytes(&self) -> Result<Vec<u8>, PartError> {
         let surrogate = String::from_utf8_lossy(&artifact::encode(&self.surrogate, Format::Json)?).into_owned();
-        let body = Body { surrogate, question: self.question.clone(), findings: self.findings.clone() };
+        let body = Body {
+            program: PROGRAM.to_owned(),
+            surrogate,
+            question: self.question.clone(),
+            findings: self.findings.clone(),
+        };
         let text = serde_json::to_string(&body).map_err(|_| PartError::NotFinite)?;
         // NaN and infinity are written as null, which is not read as a number.
         if serde_json::from_str::<Body>(&text).ok() != Some(body) {
@@ -187,8 +209,11 @@ impl Part {
             return Err(PartError::TooLarge { most: LARGEST });
         }
         let body = checked_body(bytes)?;
-        let Body { surrogate, question, findings } =
+        let Body { program, surrogate, question, findings } =
             serde_json::from_slice(body).map_err(|error| PartError::Content(error.to_string()))?;
+        if program != PROGRAM {
+            return Err(PartError::Program { found: program });
+        }
         let part = Self { surrogate: artifact::decode(surrogate.as_bytes())?.surrogate, question, findings };
         if !part.findings.fits(part.survey()?.layout()) {
             return Err(PartError::Content("counts that do not fit the question".to_owned()));
@@ -248,17 +273,24 @@ pub fn merge(mut parts: Vec<(String, Part)>) -> Result<Part, PartError> {
     let survey = Survey::new(&surrogate, &question, InstructionSet::best())?;
     let mut before = first_name.clone();
     for (name, part) in parts {
+        if name == before {
+            return Err(PartError::Twice { name });
+        }
         let different = |what| PartError::Different { what, first: first_name.clone(), second: name.clone() };
         if part.surrogate != surrogate {
             return Err(different("surrogate"));
         }
-        if part.question.seed != question.seed {
-            return Err(different("seed"));
-        }
-        if part.question != question {
-            return Err(different("question"));
+        if let Some(what) = difference(&part.question, &question) {
+            return Err(different(what));
         }
         let (end, next) = (whole.findings.chunks().end, part.findings.chunks());
+        if next.is_empty() {
+            continue; // the shard of more shards than chunks
+        }
+        if whole.findings.chunks().is_empty() {
+            (whole, before) = (part, name);
+            continue;
+        }
         if next.start > end {
             let place = format!("between {before} and {name}");
             return Err(PartError::Gap { place, missing: end..next.start, chunks: survey.layout().chunks() });
@@ -271,119 +303,20 @@ pub fn merge(mut parts: Vec<(String, Part)>) -> Result<Part, PartError> {
     Ok(whole)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::eval::{Bins, Event, Progress, Sampler, Sweep};
-    use crate::progress::Silent;
-
-    fn surrogate() -> Surrogate {
-        artifact::decode(include_bytes!("../surrogates/clutch-r2.pcc")).unwrap().surrogate
-    }
-
-    fn rich_question() -> Question {
-        let bins = |quantity: &str, bins| Bins { quantity: quantity.to_owned(), lower: -20.0, upper: 20.0, bins };
-        Question {
-            events: vec![Event { quantity: "max_re".to_owned(), below: true, threshold: -1.0 }],
-            histograms: vec![bins("max_re", 40)],
-            quantile_levels: vec![0.5],
-            quantile_bins: vec![bins("re_3", 1000)],
-            ..Question::plain(100_003, 7)
-        }
-    }
-
-    fn part(question: &Question, shard: u64, shards: u64) -> Part {
-        let surrogate = surrogate();
-        let survey = Survey::new(&surrogate, question, InstructionSet::best()).unwrap();
-        match survey.run(survey.layout().shard(shard, shards), &Silent).unwrap() {
-            Progress::Complete(findings) => Part { surrogate: surrogate.clone(), question: question.clone(), findings },
-            Progress::Interrupted(_) => panic!("nobody interrupts"),
-        }
-    }
-
-    fn parts(question: &Question, shards: u64) -> Vec<(String, Part)> {
-        (0..shards).map(|shard| (format!("part {shard}"), part(question, shard, shards))).collect()
-    }
-
-    #[test]
-    fn any_number_of_shards_gives_the_same_bytes() {
-        let sobol = Question { sampler: Sampler::Sobol, replicates: 4, ..Question::plain(32_768, 3) };
-        let sweep = Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 5 };
-        let swept = Question { sweeps: vec![sweep], ..Question::plain(9000, 1) };
-        for question in [rich_question(), sobol, swept] {
-            let whole = part(&question, 0, 1);
-            assert!(whole.is_complete());
-            for shards in [1, 3, 17, 60] {
-                let mut parts = parts(&question, shards);
-                parts.rotate_left(shards as usize / 2);
-                let merged = merge(parts).unwrap();
-                assert_eq!(merged.to_bytes().unwrap(), whole.to_bytes().unwrap(), "{shards} shards");
-            }
-        }
-    }
-
-    #[test]
-    fn parts_come_back_from_their_bytes() {
-        let part = part(&rich_question(), 1, 3);
-        assert_eq!(Part::from_bytes(&part.to_bytes().unwrap()).unwrap(), part);
-        assert!(!part.is_complete());
-    }
-
-    #[test]
-    fn gaps_overlaps_and_other_evaluations_are_refused() {
-        let question = rich_question();
-        let all = parts(&question, 5);
-        let some = |numbers: &[usize]| merge(numbers.iter().map(|&number| all[number].clone()).collect());
-        assert!(matches!(some(&[0, 1, 3, 4]), Err(PartError::Gap { missing, .. }) if missing == (10..15)));
-        assert!(matches!(some(&[0, 1, 1, 2]), Err(PartError::Overlap { .. })));
-        assert!(matches!(some(&[]), Err(PartError::Empty)));
-        assert!(some(&[2, 1, 3]).is_ok_and(|part| !part.is_complete()));
-        let other = |question: Question, what: &str| {
-            let result = merge(vec![all[0].clone(), (what.to_owned(), part(&question, 1, 5))]);
-            assert!(matches!(result, Err(PartError::Different { what: found, .. }) if found == what));
-        };
-        other(Question { seed: 8, ..question.clone() }, "seed");
-        other(Question { samples: 100_004, ..question.clone() }, "question");
-        let mut foreign = all[1].clone();
-        foreign.1.surrogate.provenance.study_name.push('x');
-        assert!(matches!(merge(vec![all[0].clone(), foreign]), Err(PartError::Different { what: "surrogate", .. })));
-    }
-
-    #[test]
-    fn damaged_files_are_refused() {
-        let bytes = part(&rich_question(), 0, 2).to_bytes().unwrap();
-        for length in [0, 5, 30, 100, 200, bytes.len() / 2, bytes.len() - 1] {
-            assert!(Part::from_bytes(&bytes[..length]).is_err(), "{length} bytes");
-        }
-        for place in (0..bytes.len()).step_by(997) {
-            let mut damaged = bytes.clone();
-            damaged[place] ^= 1;
-            assert!(Part::from_bytes(&damaged).is_err(), "byte {place}");
-        }
-        let text = String::from_utf8(bytes).unwrap();
-        let newer = text.replacen("\"pcc_part\":1", "\"pcc_part\":2", 1);
-        assert!(matches!(Part::from_bytes(newer.as_bytes()), Err(PartError::Version { found: 2 })));
-        assert!(matches!(Part::from_bytes(b"mu,k_p\n0.1,2"), Err(PartError::NotAPart)));
-    }
-
-    /// With a right checksum, so that it is the content that is judged.
-    #[test]
-    fn counts_that_do_not_fit_the_question_are_refused() {
-        let bytes = part(&rich_question(), 0, 2).to_bytes().unwrap();
-        let text = String::from_utf8(bytes).unwrap();
-        let body = text.split_once('\n').unwrap().1;
-        let refused = |from: &str, to: &str| {
-            assert!(body.contains(from), "{from}");
-            let body = body.replacen(from, to, 1);
-            let header = Header { pcc_part: 1, length: body.len() as u64, sha256: sha256(body.as_bytes()) };
-            let file = format!("{}\n{body}", serde_json::to_string(&header).unwrap());
-            assert!(Part::from_bytes(file.as_bytes()).is_err(), "{from} became {to}");
-        };
-        refused("\"samples\":100003", "\"samples\":5000");
-        refused("\"first\":0,\"end\":12", "\"first\":0,\"end\":13");
-        refused("\"level\":3", "\"level\":2");
-        refused("\"events\":[{", "\"events\":[],\"was\":[{");
-        refused("\"quantity\":\"re_3\"", "\"quantity\":\"re_9\"");
-        refused("\"bins\":40", "\"bins\":41");
-    }
+/// What two questions differ in.
+fn difference(a: &Question, b: &Question) -> Option<&'static str> {
+    let parts = [
+        (a.seed != b.seed, "seed"),
+        (a.samples != b.samples, "number of samples"),
+        (a.sampler != b.sampler || a.replicates != b.replicates, "sampler"),
+        (a.conditions != b.conditions, "condition (--where)"),
+        (a.sweeps != b.sweeps, "sweep"),
+        (a.events != b.events, "list of events"),
+        (a.histograms != b.histograms, "list of histograms"),
+        (a.quantile_levels != b.quantile_levels || a.quantile_bins != b.quantile_bins, "list of quantiles"),
+    ];
+    parts.into_iter().find(|(differs, _)| *differs).map(|(_, what)| what)
 }
+
+#[cfg(test)]
+mod tests;
