@@ -104,6 +104,8 @@ impl Regions {
             if series > MOST_SERIES {
                 return Err(SurveyError::TooManyCells { replicates: question.replicates.max(1), most: MOST_SERIES });
             }
+            // The ends first: they are what was typed.
+            [sweep.from, sweep.to].into_iter().try_for_each(|end| coordinate(inputs, input, end).map(drop))?;
             let values = (0..sweep.points).map(|number| coordinate(inputs, input, sweep.value(number)));
             swept.push((input, values.collect::<Result<_, _>>()?));
         }

@@ -92,11 +92,8 @@ impl fmt::Display for SensitivityReport {
                 cell(input.stability.map(|pair| pair.total)),
             ]);
         }
-        writeln!(
-            f,
-            "\n{table}share of what decides stability that an input causes alone / in all, estimated, ± at 95 %: the first can come \
-             out above the total within that"
-        )
+        let note = "share of what decides stability that an input causes alone / in all, ± at 95 %";
+        writeln!(f, "\n{table}{note}; first ≤ total within that")
     }
 }
 
