@@ -66,12 +66,28 @@ pub(super) struct Asked {
     #[arg(long, value_name = "EVENTS", value_delimiter = ',', value_parser = event, conflicts_with = "points")]
     pub events: Vec<Event>,
 
-    /// Also show the histogram of a quantity, as in --events
-    #[arg(long, value_name = "QUANTITY[=LOWER:UPPER:BINS]", value_parser = histogram, conflicts_with_all = ["points", "sweep"])]
+    /// Also show the histogram of a quantity, as in --events [default: max_re]
+    #[arg(
+        long,
+        value_name = "QUANTITY[=LOWER:UPPER:BINS]",
+        value_parser = histogram,
+        num_args = 0..=1,
+        default_missing_value = "max_re",
+        conflicts_with_all = ["points", "sweep"]
+    )]
     pub histogram: Vec<HistogramRequest>,
 
-    /// Also show quantiles of max_re and of every mode at these probabilities, from 0 to 1: 0.01,0.5,0.99
-    #[arg(long, value_name = "LEVELS", value_delimiter = ',', value_parser = level, conflicts_with_all = ["points", "sweep"])]
+    /// Also show quantiles of max_re and of every mode at these probabilities, from 0 to 1 [default:
+    /// 0.01,0.05,0.25,0.5,0.75,0.95,0.99]
+    #[arg(
+        long,
+        value_name = "LEVELS",
+        value_delimiter = ',',
+        value_parser = level,
+        num_args = 0..=1,
+        default_missing_values = ["0.01", "0.05", "0.25", "0.5", "0.75", "0.95", "0.99"],
+        conflicts_with_all = ["points", "sweep"]
+    )]
     pub quantiles: Vec<f64>,
 }
 
