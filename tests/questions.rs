@@ -269,11 +269,13 @@ fn an_interruption_prints_what_was_counted() {
     assert!(text.contains("  incomplete             interrupted after "), "{text}");
     let sobol = interrupt(&["eval", "clutch-r8.pcc", "-n", "16000000000", "--sampler", "sobol"]);
     assert!(sobol.contains("sobol, not two of 16 replicates of 1 000 000 000 points"), "{sobol}");
-    // All samples are there, the critical values are not.
+    // On an idle machine all samples are there by then, the critical values are not.
     let critical = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e6", "--critical", "mu", "--json"]);
     let critical: serde_json::Value = serde_json::from_str(&critical).unwrap();
-    assert_eq!((&critical["samples"], &critical["complete"]), (&1_000_000.into(), &false.into()));
-    assert!(critical["critical"].is_null() && critical["sensitivity"].is_object());
+    assert!(critical["complete"] == false && critical["critical"].is_null(), "{critical}");
+    if critical["samples"] == 1_000_000 {
+        assert!(critical["stable_proportion"].is_f64() && critical["requested_samples"] == 1_000_000);
+    }
     let report = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e13", "--json", "--quantiles", "0.5"]);
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
     assert_eq!(report["complete"], false);

@@ -54,7 +54,10 @@ pub(super) enum Command {
     /// along one input or over two (--sweep). The answer is the same for any number of threads; with --shard it can be computed in
     /// parts, on any number of machines, for pcc merge to put together. With --points it evaluates the points of a CSV file
     /// instead, whose columns are named like the inputs, in physical units; other columns are ignored.
-    #[command(group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]))]
+    #[command(
+        group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]),
+        override_usage = "pcc eval <SURROGATE> --samples <N> [OPTIONS]\n       pcc eval <SURROGATE> --points <IN.csv> --out <OUT.csv> [OPTIONS]"
+    )]
     Eval(Box<Eval>),
 
     /// Put the parts of an evaluation together

@@ -16,9 +16,60 @@ pub struct Findings {
     /// The chunk after the last.
     end: u64,
     /// One per series that the range has chunks of.
-    series: Vec<Forest<Tally>>,
+    series: Vec<Series>,
     /// One per histogram of the question, those for quantiles last.
     histograms: Vec<Histogram>,
+}
+
+/// What was found of one series.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Series {
+    /// Some of its chunks.
+    Some(Forest<Tally>),
+    /// All of them, combined: nothing follows that the trees would be needed for.
+    All(Tally),
+}
+
+impl Series {
+    /// Combines the trees if all chunks are there.
+    fn settle(&mut self, layout: &Layout) {
+        if let Self::Some(forest) = self
+            && forest.first() == 0
+            && forest.end() == layout.chunks_per_series()
+            && let Some(total) = forest.total()
+        {
+            *self = Self::All(total);
+        }
+    }
+
+    fn total(&self) -> Option<Tally> {
+        match self {
+            Self::Some(forest) => forest.total(),
+            Self::All(tally) => Some(tally.clone()),
+        }
+    }
+
+    /// Whether this is what is known of chunks `chunks` of a series, and counts add up.
+    fn fits(&self, chunks: &Range<u64>, layout: &Layout) -> bool {
+        let all = 0..layout.chunks_per_series();
+        match self {
+            Self::All(tally) => *chunks == all && layout.fits(chunks, tally),
+            Self::Some(forest) => {
+                *chunks != all
+                    && forest.is_consistent()
+                    && (forest.first()..forest.end()) == *chunks
+                    && forest.parts().all(|(chunks, tally)| layout.fits(&chunks, tally))
+            }
+        }
+    }
+
+    fn is_finite(&self) -> bool {
+        match self {
+            Self::Some(forest) => forest.parts().all(|(_, tally)| tally.is_finite()),
+            Self::All(tally) => tally.is_finite(),
+        }
+    }
 }
 
 impl Findings {
@@ -35,13 +86,13 @@ impl Findings {
     pub(super) fn push(&mut self, tally: Tally, layout: &Layout) {
         let inside = self.end % layout.chunks_per_series();
         if inside == 0 || self.series.is_empty() {
-            self.series.push(Forest::new(inside));
+            self.series.push(Series::Some(Forest::new(inside)));
         }
-        if let Some(forest) = self.series.last_mut() {
-            forest.push(tally);
-            if inside + 1 == layout.chunks_per_series() {
-                forest.shrink();
+        if let Some(series) = self.series.last_mut() {
+            if let Series::Some(forest) = series {
+                forest.push(tally);
             }
+            series.settle(layout);
         }
         self.end += 1;
     }
@@ -60,7 +111,10 @@ impl Findings {
             && let Some(own) = self.series.last_mut()
             && let Some(continued) = series.next()
         {
-            own.append(continued);
+            if let (Series::Some(own), Series::Some(continued)) = (&mut *own, continued) {
+                own.append(continued);
+            }
+            own.settle(layout);
         }
         self.series.extend(series);
         self.end = next.end;
@@ -81,17 +135,15 @@ impl Findings {
         }
         let series = self.first / per_series..self.end.div_ceil(per_series);
         let count = if self.first == self.end { 0 } else { series.end - series.start };
-        let ranges = series.zip(&self.series).all(|(number, forest)| {
+        let tallies = series.zip(&self.series).all(|(number, series)| {
             let start = number.saturating_mul(per_series);
             let first = self.first.max(start) - start;
             let end = self.end.min(start.saturating_add(per_series)) - start;
-            forest.is_consistent() && forest.first() == first && forest.end() == end
+            series.fits(&(first..end), layout)
         });
-        let tallies = self.series.iter().flat_map(Forest::parts).all(|(chunks, tally)| layout.fits(&chunks, tally));
         let samples = layout.samples_in(&self.chunks());
         let bins = self.histograms.iter().map(|histogram| histogram.counts.len());
         self.series.len() as u64 == count
-            && ranges
             && tallies
             && bins.eq(layout.bins.iter().copied())
             && self.histograms.iter().all(|histogram| histogram.checked_samples() == Some(samples))
@@ -99,22 +151,30 @@ impl Findings {
 
     /// All samples together, series after series; `None` without samples.
     pub fn total(&self) -> Option<Tally> {
-        total(self.series.iter().filter_map(Forest::total))
+        total(self.series.iter().filter_map(Series::total))
+    }
+
+    /// Whether all moments are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        self.series.iter().all(Series::is_finite)
     }
 
     /// What is said of every point of the sweeps that is complete, of the one point without sweeps in any case.
     pub fn answer(&self, layout: &Layout) -> Answer {
         let is_complete = self.chunks() == (0..layout.chunks());
-        let is_whole = |forest: &Forest<Tally>| forest.first() == 0 && forest.end() == layout.chunks_per_series();
         let replicates = layout.replicates as usize;
         let cells = self.series.chunks(replicates).filter_map(|series| {
-            let whole: Vec<Tally> = series.iter().filter(|forest| is_whole(forest)).filter_map(Forest::total).collect();
+            let whole = series.iter().filter_map(|series| match series {
+                Series::All(tally) => Some(tally.clone()),
+                Series::Some(_) => None,
+            });
+            let whole: Vec<Tally> = whole.collect();
             if layout.is_sweep && whole.len() < replicates {
                 return None;
             }
             // Of replicates that can be compared with others, or of all there is.
             match whole.len() {
-                0 | 1 => Some(Cell { total: total(series.iter().filter_map(Forest::total))?, replicates: Vec::new() }),
+                0 | 1 => Some(Cell { total: total(series.iter().filter_map(Series::total))?, replicates: Vec::new() }),
                 _ => Some(Cell { total: total(whole.iter().cloned())?, replicates: whole }),
             }
         });

@@ -25,6 +25,9 @@ const FINE_BINS: u32 = 10_000;
 /// The smallest width of bins, relative to the values: where a quantity does not vary.
 const NARROWEST: f64 = 1e-6;
 
+/// The smallest size of values that bins are laid for: one over their width has to be a number.
+const SMALLEST: f64 = 1e-280;
+
 /// The first samples of a question's seed and conditions, whatever else it asks: all its shards find the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pilot(Summary);
@@ -73,7 +76,7 @@ impl Pilot {
     fn range(&self, quantity: Quantity) -> (f64, f64) {
         let (moments, unit) = self.moments(quantity);
         let (lower, upper) = (unit * moments.minimum(), unit * moments.maximum());
-        let narrowest = NARROWEST * lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE / NARROWEST);
+        let narrowest = NARROWEST * lower.abs().max(upper.abs()).max(SMALLEST);
         if upper - lower >= narrowest { (lower, upper) } else { (lower - narrowest, upper + narrowest) }
     }
 

@@ -55,7 +55,17 @@ struct Header {
     sha256: String,
 }
 
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
+/// The second line, as it is written.
+#[derive(Debug, Serialize)]
+struct Content<'a> {
+    program: &'a str,
+    surrogate: &'a str,
+    question: &'a Question,
+    findings: &'a Findings,
+}
+
+/// The same, as it is read.
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Body {
     /// Version of the program: another may draw or sum otherwise.
@@ -109,10 +119,10 @@ pub enum PartError {
     #[error("holds something else than an evaluation: {0}; evaluate and merge with the same version of pcc")]
     Content(String),
     /// The surrogate inside.
-    #[error("holds a surrogate that cannot be read: {0}")]
+    #[error("holds a surrogate that cannot be read")]
     Surrogate(#[from] ReadError),
     /// The question does not fit the surrogate.
-    #[error("holds a question that does not fit its surrogate: {0}")]
+    #[error("holds a question that does not fit its surrogate")]
     Question(#[from] SurveyError),
     /// The surrogate cannot be written.
     #[error(transparent)]
@@ -171,17 +181,13 @@ impl Part {
     /// [`PartError::NotFinite`], [`PartError::Write`].
     pub fn to_bytes(&self) -> Result<Vec<u8>, PartError> {
         let surrogate = String::from_utf8_lossy(&artifact::encode(&self.surrogate, Format::Json)?).into_owned();
-        let body = Body {
-            program: PROGRAM.to_owned(),
-            surrogate,
-            question: self.question.clone(),
-            findings: self.findings.clone(),
-        };
-        let text = serde_json::to_string(&body).map_err(|_| PartError::NotFinite)?;
-        // NaN and infinity are written as null, which is not read as a number.
-        if serde_json::from_str::<Body>(&text).ok() != Some(body) {
+        // NaN and infinity would be written as null, which is not read as a number.
+        if !self.findings.is_finite() {
             return Err(PartError::NotFinite);
         }
+        let Self { question, findings, .. } = self;
+        let content = Content { program: PROGRAM, surrogate: &surrogate, question, findings };
+        let text = serde_json::to_string(&content).map_err(|_| PartError::NotFinite)?;
         let header = Header { pcc_part: VERSION, length: text.len() as u64, sha256: sha256(text.as_bytes()) };
         let header = serde_json::to_string(&header).map_err(|_| PartError::NotFinite)?;
         Ok(format!("{header}\n{text}").into_bytes())

@@ -124,3 +124,15 @@ fn counts_that_do_not_fit_the_question_are_refused() {
     refused("\"replicates\":1", "\"replicates\":4294967295");
     refused("\"sampler\":\"monte-carlo\"", "\"sampler\":\"sobol\"");
 }
+
+/// The points of a sweep take the same room, however many samples each has.
+#[test]
+fn parts_of_sweeps_do_not_grow_with_the_number_of_samples() {
+    let sweep = Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 50 };
+    let size = |samples| {
+        let question = Question { sweeps: vec![sweep.clone()], ..Question::plain(samples, 1) };
+        part(&question, 0, 1).to_bytes().unwrap().len()
+    };
+    // Counts have more digits.
+    assert!(size(7 * 4096) < size(4096) + 50 * 16);
+}

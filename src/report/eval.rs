@@ -25,6 +25,9 @@ pub struct EvalReport {
     pub requested_samples: u64,
     /// Whether these are all samples, and all else that was asked for; false after an interruption.
     pub complete: bool,
+    /// Whether it is something else than samples that is missing.
+    #[serde(skip)]
+    pub has_all_samples: bool,
     /// How many parts were put together.
     #[serde(skip)]
     pub merged_parts: Option<usize>,
@@ -174,6 +177,7 @@ impl EvalReport {
         }
         let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
         report.complete = answer.is_complete;
+        report.has_all_samples = answer.is_complete;
         report.sampler = question.sampler.name();
         report.requested_samples = question.samples;
         report.replicates = cell.replicates.len().max(1) as u32;
@@ -230,6 +234,7 @@ impl EvalReport {
             samples: stable.samples,
             requested_samples: stable.samples,
             complete: true,
+            has_all_samples: true,
             merged_parts: None,
             seed,
             sampler: Sampler::MonteCarlo.name(),

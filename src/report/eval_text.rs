@@ -89,10 +89,11 @@ impl EvalReport {
     fn write_circumstances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.complete {
             let (done, asked) = (count(self.samples), count(self.requested_samples));
-            writeln!(
-                f,
-                "  incomplete             interrupted after {done} of {asked} samples; what takes all of them is left out"
-            )?;
+            let place = match self.has_all_samples {
+                true => "all samples are counted; critical values or Sobol' indices are left out".to_owned(),
+                false => format!("interrupted after {done} of {asked} samples; what takes all of them is left out"),
+            };
+            writeln!(f, "  incomplete             {place}")?;
         }
         if self.sampler != Sampler::MonteCarlo.name() {
             let asked = self.requested_replicates;

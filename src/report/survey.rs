@@ -9,6 +9,9 @@ use std::fmt::Write;
 /// Confidence level of the printed intervals.
 pub(super) const LEVEL: f64 = 0.95;
 
+/// Relative width of histograms whose edges would all look the same.
+const NARROW: f64 = 1e-5;
+
 /// Width of the longest bar of a histogram, in characters.
 const LONGEST_BAR: f64 = 50.0;
 
@@ -145,6 +148,10 @@ pub(super) fn quantiles_table(quantiles: &[QuantilesReport]) -> Option<Table> {
 /// One line per bin, with a bar.
 pub(super) fn histogram_text(histogram: &HistogramReport) -> String {
     let HistogramReport { quantity, lower, upper, below, counts, above } = histogram;
+    if upper - lower < NARROW * lower.abs().max(upper.abs()) {
+        let samples = count(below + counts.iter().sum::<u64>() + above);
+        return format!("histogram of {quantity}\nall {samples} samples are near {}\n", plain(*lower));
+    }
     let most = counts.iter().copied().max().unwrap_or(0).max(1);
     let width = (upper - lower) / counts.len().max(1) as f64;
     let mut table =

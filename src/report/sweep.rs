@@ -189,6 +189,7 @@ impl fmt::Display for SweepReport {
         writeln!(f, "  judged by              modes {}", modes.join(", "))?;
         writeln!(f, "  surrogate band         {}\n", self.width_of_band())?;
         match self.sweeps.len() {
+            _ if self.points.is_empty() => {}
             2 => self.write_map(f)?,
             _ => writeln!(f, "{}from, to: 95 % sampling interval", self.table())?,
         }
@@ -208,7 +209,8 @@ impl SweepReport {
             Some(widest) => {
                 format!("up to {} % away from the share, at the worst point", significant(100.0 * widest, 2))
             }
-            None => "unknown: no point could be left out".to_owned(),
+            None if self.max_re_residuals.is_empty() => "unknown: no point could be left out".to_owned(),
+            None => "of no point yet".to_owned(),
         }
     }
 

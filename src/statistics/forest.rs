@@ -125,11 +125,6 @@ impl<T: Merge> Forest<T> {
         follows && self.trees.windows(2).all(|pair| !are_siblings(&pair[0], &pair[1]))
     }
 
-    /// Gives back memory that is not needed for what is held.
-    pub fn shrink(&mut self) {
-        self.trees.shrink_to_fit();
-    }
-
     fn push_tree(&mut self, mut tree: Tree<T>) {
         while let Some(before) = self.trees.pop_if(|before| are_siblings(before, &tree)) {
             let mut value = before.value;

@@ -117,6 +117,11 @@ impl Moments {
         self.count == count && count > 0 && self.squares >= 0.0 && self.minimum <= self.maximum && holds_mean
     }
 
+    /// Whether all of them are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        [self.mean, self.squares, self.minimum, self.maximum].iter().all(|number| number.is_finite())
+    }
+
     /// How many numbers were seen.
     pub fn count(&self) -> u64 {
         self.count
