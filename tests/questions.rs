@@ -239,7 +239,10 @@ fn bad_parts_are_refused_by_name() {
         .iter()
         .map(|arguments| format!("── {}\n{}\n", arguments.join(" "), refusal(folder.path(), arguments).trim_end()))
         .collect();
-    insta::assert_snapshot!("bad_parts", messages);
+    // Lengths depend on the version and on digits of moments.
+    insta::with_settings!({filters => vec![(r"has \d+ bytes after its first line instead of \d+", "has [n] bytes after its first line instead of [m]")]}, {
+        insta::assert_snapshot!("bad_parts", messages);
+    });
     let replaced = ["merge", "0.part", "1.part", "2.part", "--part", "0.part"];
     assert!(refusal(folder.path(), &replaced).contains("would replace the file it is made from"));
 }
