@@ -3,6 +3,7 @@
 use super::*;
 use crate::eval::{Bins, Event, Progress, Sampler, Sweep};
 use crate::progress::Silent;
+use proptest::prelude::*;
 
 fn surrogate() -> Surrogate {
     artifact::decode(include_bytes!("../../surrogates/clutch-r2.pcc")).unwrap().surrogate
@@ -135,4 +136,56 @@ fn parts_of_sweeps_do_not_grow_with_the_number_of_samples() {
     };
     // Counts have more digits.
     assert!(size(7 * 4096) < size(4096) + 50 * 16);
+}
+
+/// Pointers to all values inside `value`.
+fn places(value: &serde_json::Value, place: String, all: &mut Vec<String>) {
+    match value {
+        serde_json::Value::Object(fields) => {
+            fields.iter().for_each(|(name, field)| places(field, format!("{place}/{name}"), all));
+        }
+        serde_json::Value::Array(entries) => {
+            (0..).zip(entries).for_each(|(k, entry)| places(entry, format!("{place}/{k}"), all));
+        }
+        _ => {}
+    }
+    all.push(place);
+}
+
+proptest! {
+    /// With right checksums, so that it is the content that is judged: nothing makes reading or answering panic.
+    #[test]
+    fn changed_contents_are_refused_or_answered(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..12usize), 1..4),
+        is_sweep in any::<bool>(),
+    ) {
+        let sweep = Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 3 };
+        let swept = Question { sweeps: vec![sweep], sampler: Sampler::Sobol, replicates: 4, ..Question::plain(64, 1) };
+        let question = if is_sweep { swept } else { Question { samples: 9000, ..rich_question() } };
+        let bytes = part(&question, 0, 2).to_bytes().unwrap();
+        let body = bytes.splitn(2, |&byte| byte == b'\n').nth(1).unwrap();
+        let mut content: serde_json::Value = serde_json::from_slice(body).unwrap();
+        for (place, value) in changes {
+            let mut all = Vec::new();
+            places(&content, String::new(), &mut all);
+            all.retain(|place| !place.starts_with("/surrogate") && !place.is_empty());
+            let values = [
+                0.into(), 1.into(), (-1).into(), u64::MAX.into(), (1u64 << 63).into(), u32::MAX.into(), 1e308.into(),
+                (-1e308).into(), 0.5.into(), serde_json::Value::Null, "mu".into(), serde_json::Value::Array(Vec::new()),
+            ];
+            if let Some(target) = content.pointer_mut(&all[place.index(all.len())]) {
+                *target = values[value].clone();
+            }
+        }
+        let body = serde_json::to_string(&content).unwrap();
+        let header = Header { pcc_part: 1, length: body.len() as u64, sha256: sha256(body.as_bytes()) };
+        let file = format!("{}\n{body}", serde_json::to_string(&header).unwrap());
+        if let Ok(part) = Part::from_bytes(file.as_bytes()) {
+            let survey = part.survey().unwrap();
+            for cell in part.findings.answer(survey.layout()).cells {
+                let share = cell.share(0.95, |tally| tally.summary.stable);
+                prop_assert!((0.0..=1.0).contains(&share.value));
+            }
+        }
+    }
 }
