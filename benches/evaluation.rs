@@ -7,7 +7,7 @@
 use pcc::artifact::decode;
 use pcc::design::Runner;
 use pcc::eval::{LANES, Lanes, Plan, Question, Sampler, Survey, monte_carlo};
-use pcc::input::random_point;
+use pcc::input::random_points;
 use pcc::numerics::InstructionSet;
 use pcc::progress::Silent;
 use pcc::random::{Purpose, unit_pairs};
@@ -172,13 +172,8 @@ fn print_parts(surrogate: &Surrogate) {
 /// One thread and all, the samplers, and the model itself.
 fn print_whole(surrogate: &Surrogate, study: &Study) {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let points: Vec<Vec<f64>> = (0..RUNS as u64)
-        .map(|index| {
-            let mut point = vec![0.0; study.inputs.dimension()];
-            random_point(&study.inputs, 1, Purpose::Evaluation, index, &mut point);
-            study.inputs.physical(&point)
-        })
-        .collect();
+    let points = random_points(&study.inputs, 1, Purpose::Evaluation, 0..RUNS as u64);
+    let points: Vec<Vec<f64>> = points.iter().map(|point| study.inputs.physical(point)).collect();
     let sampled = |sampler: Sampler| Question {
         sampler,
         replicates: sampler.default_replicates(),

@@ -10,7 +10,7 @@ use pcc::eval::monte_carlo;
 use pcc::fit::minimum_norm::{self, Learnt};
 use pcc::fit::stepwise;
 use pcc::index_set::Hyperbolic;
-use pcc::input::random_point;
+use pcc::input::random_points;
 use pcc::polynomial::Family;
 use pcc::progress::Silent;
 use pcc::random::Purpose;
@@ -33,13 +33,8 @@ fn study() -> Study {
 
 fn direct_computation(criterion: &mut Criterion) {
     let study = study();
-    let points: Vec<Vec<f64>> = (0..1000)
-        .map(|index| {
-            let mut standardized = vec![0.0; study.inputs.dimension()];
-            random_point(&study.inputs, 1, Purpose::Evaluation, index, &mut standardized);
-            study.inputs.physical(&standardized)
-        })
-        .collect();
+    let points = random_points(&study.inputs, 1, Purpose::Evaluation, 0..1000);
+    let points: Vec<Vec<f64>> = points.iter().map(|point| study.inputs.physical(point)).collect();
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let mut group = criterion.benchmark_group("model");
     group.throughput(Throughput::Elements(points.len() as u64));

@@ -4,6 +4,7 @@ mod support;
 
 use pcc::artifact::{Format, encode};
 use pcc::eval::{evaluate_points, monte_carlo};
+use pcc::input::random_points;
 use pcc::progress::Silent;
 use pcc::random::Purpose;
 use support::{build, shipped_study};
@@ -38,13 +39,7 @@ fn evaluations_have_the_same_counts_and_moments_on_1_2_3_and_8_threads() {
 fn the_compiled_plan_equals_the_plain_sum_at_the_same_points() {
     let surrogate = build(&shipped_study(4));
     let plan = pcc::eval::Plan::new(&surrogate);
-    let points: Vec<Vec<f64>> = (0..100)
-        .map(|index| {
-            let mut point = vec![0.0; 4];
-            pcc::input::random_point(&surrogate.inputs, 3, Purpose::Evaluation, index, &mut point);
-            point
-        })
-        .collect();
+    let points = random_points(&surrogate.inputs, 3, Purpose::Evaluation, 0..100);
     let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
     let block = evaluate_points(&surrogate, &plan, &references);
     for (i, point) in points.iter().enumerate() {
@@ -78,13 +73,7 @@ fn moments_from_coefficients_equal_monte_carlo_moments_within_4_standard_errors(
     let summary = monte_carlo(&surrogate, SAMPLES, 1, &Silent).unwrap();
     // Fourth central moments, for the standard error of the variance, from a smaller independent sample.
     let plan = pcc::eval::Plan::new(&surrogate);
-    let points: Vec<Vec<f64>> = (0..50_000)
-        .map(|index| {
-            let mut point = vec![0.0; 8];
-            pcc::input::random_point(&surrogate.inputs, 2, Purpose::Evaluation, index, &mut point);
-            point
-        })
-        .collect();
+    let points = random_points(&surrogate.inputs, 2, Purpose::Evaluation, 0..50_000);
     let block = evaluate_points(&surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
     for (id, (mean, variance)) in surrogate.moments().into_iter().enumerate() {
         let found = &summary.components[id];

@@ -8,7 +8,7 @@ use pcc::eval::{
     Bins, Condition, Event, Findings, Lanes, Plan, Progress, Question, Sampler, Survey, Sweep, evaluate_points,
     monte_carlo,
 };
-use pcc::input::random_point;
+use pcc::input::random_points;
 use pcc::numerics::InstructionSet;
 use pcc::progress::Silent;
 use pcc::random::{Purpose, Stream};
@@ -105,14 +105,7 @@ const ROUNDING: f64 = 1e-12;
 fn lanes_equal_the_plain_sums_and_their_recombination() {
     let names = (1..=8).flat_map(|r| [format!("clutch-r{r}"), format!("clutch-r{r}-eigenvalues")]);
     for surrogate in names.map(|name| shipped(&name)).chain([on_elements()]) {
-        let dimension = surrogate.inputs.dimension();
-        let points: Vec<Vec<f64>> = (0..333)
-            .map(|index| {
-                let mut point = vec![0.0; dimension];
-                random_point(&surrogate.inputs, 3, Purpose::Evaluation, index, &mut point);
-                point
-            })
-            .collect();
+        let points = random_points(&surrogate.inputs, 3, Purpose::Evaluation, 0..333);
         let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
         let block = evaluate_points(&surrogate, &Plan::new(&surrogate), &references);
         let moments = surrogate.moments();
@@ -195,13 +188,7 @@ fn sobol_points_have_a_fifth_of_the_error_of_monte_carlo() {
 
 /// Coordinates in physical units and max Re λ of the first samples of a seed.
 fn samples(surrogate: &Surrogate, seed: u64, count: u64) -> Vec<(Vec<f64>, f64)> {
-    let points: Vec<Vec<f64>> = (0..count)
-        .map(|index| {
-            let mut point = vec![0.0; surrogate.inputs.dimension()];
-            random_point(&surrogate.inputs, seed, Purpose::Evaluation, index, &mut point);
-            point
-        })
-        .collect();
+    let points = random_points(&surrogate.inputs, seed, Purpose::Evaluation, 0..count);
     let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
     let block = evaluate_points(surrogate, &Plan::new(surrogate), &references);
     points.iter().map(|point| surrogate.inputs.physical(point)).zip(block.max_re).collect()

@@ -21,7 +21,7 @@ pub(super) struct Eval {
     pub critical: Option<String>,
 
     #[command(flatten)]
-    pub asked: Asked,
+    pub asked: QuestionOptions,
 
     #[command(flatten)]
     pub pictures: Pictures,
@@ -42,7 +42,7 @@ pub(super) struct Eval {
 /// What is asked beside the stability of random samples.
 #[derive(Debug, Args)]
 #[group(skip)]
-pub(super) struct Asked {
+pub(super) struct QuestionOptions {
     /// How samples are drawn
     #[arg(long, value_enum, default_value = "monte-carlo", conflicts_with = "points")]
     pub sampler: SamplerName,

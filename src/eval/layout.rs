@@ -81,14 +81,13 @@ impl Layout {
     pub(super) fn fits(&self, chunks: &Range<u64>, tally: &Tally) -> bool {
         let summary = &tally.summary;
         let samples = self.samples_in(chunks);
-        let modes = summary.modes.iter();
-        let moments = modes.clone().flat_map(|mode| [&mode.growth_rate, &mode.angular_frequency, &mode.damping_ratio]);
-        let counts = tally.events.iter().copied().chain(modes.map(|mode| mode.unstable));
+        let unstable = summary.modes.iter().map(|mode| mode.unstable);
+        let counts = tally.events.iter().copied().chain(unstable).chain(summary.stable_if_shifted);
         summary.components.len() == self.components
             && summary.modes.len() == self.modes
             && tally.events.len() == self.events
-            && moments.chain(&summary.components).chain([&summary.max_re]).all(|moments| moments.are_of(samples))
-            && counts.chain(summary.stable_if_shifted).chain([summary.stable]).all(|count| count <= samples)
+            && summary.moments().all(|moments| moments.are_of(samples))
+            && counts.chain([summary.stable]).all(|count| count <= samples)
     }
 }
 

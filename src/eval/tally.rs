@@ -27,9 +27,7 @@ pub struct Tally {
 impl Tally {
     /// Whether all moments are finite numbers.
     pub fn is_finite(&self) -> bool {
-        let Summary { max_re, components, modes, .. } = &self.summary;
-        let of_modes = modes.iter().flat_map(|mode| [&mode.growth_rate, &mode.angular_frequency, &mode.damping_ratio]);
-        of_modes.chain(components).chain([max_re]).all(Moments::is_finite)
+        self.summary.moments().all(Moments::is_finite)
     }
 }
 

@@ -8,5 +8,5 @@ mod space;
 
 pub use marginal::{Marginal, MarginalError, Uniform};
 pub use mesh::{Branch, Element, Mesh, MeshError, Split};
-pub use monte_carlo::random_point;
+pub use monte_carlo::{random_point, random_points};
 pub use space::{Input, InputError, InputSpace};

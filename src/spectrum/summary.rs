@@ -53,6 +53,13 @@ impl Summary {
         }
     }
 
+    /// All moments: of max Re λ, of every component, of every mode.
+    pub fn moments(&self) -> impl Iterator<Item = &Moments> {
+        let modes = self.modes.iter();
+        let of_modes = modes.flat_map(|mode| [&mode.growth_rate, &mode.angular_frequency, &mode.damping_ratio]);
+        std::iter::once(&self.max_re).chain(&self.components).chain(of_modes)
+    }
+
     /// Number of samples.
     pub fn samples(&self) -> u64 {
         self.max_re.count()

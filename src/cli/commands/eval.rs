@@ -1,13 +1,13 @@
 //! `pcc eval`
 
-use super::super::eval_arguments::{Asked as AskedOptions, Eval, Pictures};
+use super::super::eval_arguments::{Eval, Pictures, QuestionOptions};
 use super::super::points::{Evaluated, PointsFile};
 use super::super::question::Shard;
 use super::super::{Context, Ending};
 use super::{PointsReport, interruptible, keep_inputs, keep_results, keep_unmarked_files, read_surrogate};
 use crate::artifact::{check_writable, save};
 use crate::eval::{
-    EvalError, Findings, Pilot, PilotError, Plan, Progress, Quantity, Question, Sampler, Survey, SurveyError,
+    Answer, EvalError, Findings, Pilot, PilotError, Plan, Progress, Quantity, Question, Sampler, Survey, SurveyError,
     critical_values_in, evaluate_points, sensitivities_in,
 };
 use crate::numerics::InstructionSet;
@@ -50,12 +50,7 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
     if let Some(file) = &options.part {
         return write_part(context, &survey, &surrogate, &question, options.shard, file, &options.surrogate);
     }
-    let start = Instant::now();
-    let findings =
-        survey.run(0..survey.layout().chunks(), &context.terminal).map_err(|error| failed(error, &surrogate))?;
-    let (Progress::Complete(found) | Progress::Interrupted(found)) = &findings;
-    let answer = found.answer(survey.layout());
-    let elapsed_seconds = start.elapsed().as_secs_f64();
+    let (answer, elapsed_seconds) = answer(context, &survey, &surrogate)?;
     let asked =
         Asked { surrogate: &surrogate, question: &question, answer: &answer, elapsed_seconds, merged_parts: None };
     present(context, asked, &survey, critical, &options.pictures)
@@ -65,15 +60,19 @@ pub(in super::super) fn eval(context: &Context, options: &Eval) -> anyhow::Resul
 pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
     let question = Question::plain(samples, seed);
     let survey = Survey::new(surrogate, &question, InstructionSet::best())?;
-    let start = Instant::now();
-    let findings =
-        survey.run(0..survey.layout().chunks(), &context.terminal).map_err(|error| failed(error, surrogate))?;
-    let Progress::Complete(findings) = findings else { return Err(Interrupted.into()) };
-    let answer = findings.answer(survey.layout());
-    let elapsed_seconds = start.elapsed().as_secs_f64();
+    let (answer, elapsed_seconds) = answer(context, &survey, surrogate)?;
     let asked = Asked { surrogate, question: &question, answer: &answer, elapsed_seconds, merged_parts: None };
     let report = report(context, asked, &survey, None)?.ok_or(Interrupted)?;
     if report.complete { Ok(report) } else { Err(Interrupted.into()) }
+}
+
+/// Evaluates all samples, or those before an interruption, and tells the seconds that took.
+fn answer(context: &Context, survey: &Survey<'_>, surrogate: &Surrogate) -> anyhow::Result<(Answer, f64)> {
+    let start = Instant::now();
+    let progress =
+        survey.run(0..survey.layout().chunks(), &context.terminal).map_err(|error| failed(error, surrogate))?;
+    let (Progress::Complete(findings) | Progress::Interrupted(findings)) = progress;
+    Ok((findings.answer(survey.layout()), start.elapsed().as_secs_f64()))
 }
 
 /// Prints an answer, and writes its pictures if it is complete.
@@ -140,7 +139,7 @@ fn until_interrupted<T>(result: Result<T, EvalError>, surrogate: &Surrogate) -> 
 }
 
 /// What is asked, in numbers.
-fn question(surrogate: &Surrogate, asked: &AskedOptions, samples: u64, seed: u64) -> anyhow::Result<Question> {
+fn question(surrogate: &Surrogate, asked: &QuestionOptions, samples: u64, seed: u64) -> anyhow::Result<Question> {
     let sampler = Sampler::from(asked.sampler);
     let mut question = Question {
         sampler,

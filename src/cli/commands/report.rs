@@ -6,7 +6,7 @@ use super::eval::sample;
 use super::{SURROGATE_PAGE, interruptible, keep_inputs, keep_unmarked_files, read_study, read_surrogate};
 use crate::artifact::{check_writable, save};
 use crate::eval::{Plan, evaluate_points};
-use crate::input::random_point;
+use crate::input::random_points;
 use crate::random::Purpose;
 use crate::reference::{ModelSample, check_problem};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
@@ -73,13 +73,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
 
 /// The first points that `eval` and `reference` take, and the surrogate there.
 fn at_random_points(surrogate: &Surrogate, seed: u64) -> (Vec<Vec<f64>>, Block) {
-    let points: Vec<Vec<f64>> = (0..POINTS)
-        .map(|index| {
-            let mut point = vec![0.0; surrogate.inputs.dimension()];
-            random_point(&surrogate.inputs, seed, Purpose::Evaluation, index, &mut point);
-            point
-        })
-        .collect();
+    let points = random_points(&surrogate.inputs, seed, Purpose::Evaluation, 0..POINTS);
     let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
     let block = evaluate_points(surrogate, &Plan::new(surrogate), &references);
     (points, block)
