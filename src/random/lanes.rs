@@ -1,7 +1,7 @@
 //! Uniform numbers of many streams at once.
 
 use super::philox::ten_rounds;
-use super::stream::{Purpose, key};
+use super::stream::{Purpose, counter, key};
 use super::uniform::{UNIT_BITS, unit_interval};
 
 /// Numbers 2 `pair` and 2 `pair` + 1 of the streams of index `first`, `first` + 1, …, one stream per lane: the same bits as
@@ -19,7 +19,7 @@ pub fn unit_pairs<const LANES: usize>(
     let key = key(seed);
     for lane in 0..LANES {
         let index = first.wrapping_add(lane as u64);
-        let words = ten_rounds([u64::from(pair), purpose as u64, index, index >> 32], key);
+        let words = ten_rounds(counter(pair, purpose, index).map(u64::from), key);
         even[lane] = unit(words[0], words[1]);
         odd[lane] = unit(words[2], words[3]);
     }
