@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     studies.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     studies.sort();
     for path in studies {
-        let study = Study::from_toml(&fs::read_to_string(&path)?)?;
+        let study = Study::from_toml_in(&fs::read_to_string(&path)?, &root.join("surrogates"))?;
         let surrogate = pcc::build::build(&study, &Silent)?;
         let (binary, json) = (path.with_extension("pcc"), path.with_extension("json"));
         if check {

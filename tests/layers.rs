@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 
 /// Modules by layer, from those that know no domain to those that face users.
 const LAYERS: [&[&str]; 8] = [
-    &["numerics", "random", "statistics", "digest", "parallel", "progress"],
+    &["numerics", "random", "statistics", "digest", "expression", "parallel", "progress"],
     &["polynomial", "index_set", "input"],
     &["model", "spectrum", "study"],
-    &["design"],
+    &["journal", "design"],
     &["regression", "fit"],
     &["surrogate", "artifact"],
     &["build", "eval", "part", "reference", "reproduce"],

@@ -7,11 +7,22 @@ use pcc::study::Study;
 use std::fs;
 use support::{repository, text};
 
-/// Blocks of the README fenced with ```language.
-fn blocks(language: &str) -> Vec<String> {
-    let readme = text("README.md");
+/// Blocks fenced with ```language.
+fn blocks(page: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}\n");
-    readme.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+    page.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+}
+
+/// A chapter of the README.
+fn chapter(title: &str) -> String {
+    let readme = text("README.md");
+    let found = readme.split("\n## ").find(|chapter| chapter.starts_with(title));
+    found.unwrap_or_else(|| panic!("no chapter {title}")).to_owned()
+}
+
+/// The study of the user's own model.
+fn belt() -> String {
+    blocks(&chapter("Your model in five minutes"), "toml").remove(0)
 }
 
 /// Without what changes from run to run.
@@ -52,8 +63,10 @@ fn the_worked_example_prints_what_it_prints() {
     for file in ["surrogates/clutch-r3.toml", "surrogates/clutch-r8.pcc"] {
         fs::copy(repository(file), folder.path().join(file)).unwrap();
     }
-    let example: Vec<String> = blocks("console").into_iter().filter(|block| block.starts_with("$ pcc ")).collect();
-    assert_eq!(example.len(), 6, "build, eval, compare, certify, two sweeps");
+    fs::write(folder.path().join("belt.toml"), belt()).unwrap();
+    let example: Vec<String> =
+        blocks(&text("README.md"), "console").into_iter().filter(|block| block.starts_with("$ pcc ")).collect();
+    assert_eq!(example.len(), 9, "build, eval, compare, certify; build, eval, compare; two sweeps");
     for block in example {
         let (command, expected) = block.split_once('\n').unwrap();
         let output = Command::cargo_bin("pcc")
@@ -73,7 +86,7 @@ fn the_worked_example_prints_what_it_prints() {
 
 #[test]
 fn the_explained_study_is_valid_and_shows_the_defaults() {
-    for (explained, target) in blocks("toml").iter().zip(["invariants", "eigenvalues"]) {
+    for (explained, target) in blocks(&chapter("The study file"), "toml").iter().zip(["invariants", "eigenvalues"]) {
         shows_the_defaults(explained, target);
     }
 }
@@ -81,13 +94,39 @@ fn the_explained_study_is_valid_and_shows_the_defaults() {
 /// The fits of full expansions, each beside the same study without them.
 #[test]
 fn the_explained_full_expansions_show_the_defaults() {
-    let toml = blocks("toml");
+    let toml = blocks(&chapter("The study file"), "toml");
     assert_eq!(toml.len(), 5, "two studies, three fits");
     let study = toml[1].split("[design]").next().unwrap();
     let bare = ["method = \"gpc\"", "method = \"gpc\"\nsolver = \"least-squares\"", "method = \"me-gpc\""];
     for (explained, bare) in toml[2..].iter().zip(bare) {
         let explained = Study::from_toml(&format!("{study}{explained}")).unwrap();
         assert_eq!(Study::from_toml(&format!("{study}[fit]\n{bare}\n")).unwrap(), explained);
+    }
+}
+
+/// Studies of models of the user's, in the README and on their own page, are read as they stand there.
+#[test]
+fn explained_models_are_valid() {
+    let five_minutes = blocks(&chapter("Your model in five minutes"), "toml");
+    let (before, rest) = five_minutes[0].split_once("[model]").unwrap();
+    let inputs = rest.split_once("[inputs]").unwrap().1;
+    let program = Study::from_toml(&format!("{before}{}[inputs]{inputs}", five_minutes[1])).unwrap();
+    assert_eq!(program.model.kind(), "command");
+    let (mut whole, mut parts) = (Vec::new(), 0);
+    for block in blocks(&text("docs/MODELS.md"), "toml") {
+        if block.starts_with("format = 1") {
+            let study = Study::from_toml(&block).unwrap_or_else(|error| panic!("{block}: {error}"));
+            whole.push(study.model.kind());
+            if study.model.kind() == "matrices" {
+                pcc::build::build(&study, &pcc::progress::Silent).unwrap();
+            }
+        } else {
+            parts += 1;
+        }
+    }
+    assert_eq!((whole, parts), (vec!["matrices", "command", "table"], 1));
+    for block in blocks(&text("docs/CLUSTERS.md"), "toml") {
+        assert_eq!(Study::from_toml(&block).unwrap().model.kind(), "command");
     }
 }
 

@@ -9,7 +9,7 @@
 use super::BuildError;
 use super::decision;
 use super::record;
-use crate::design::{Run, RunError, Runner, TensorGauss};
+use crate::design::{Campaign, Run, RunError, Runner, TensorGauss};
 use crate::fit::gpc::{Projection, project, total_degree};
 use crate::fit::multi_element::{Division, EQUAL, division};
 use crate::fit::{Fitted, Stop};
@@ -27,8 +27,12 @@ use crate::surrogate::{Counts, Surrogate};
 const BLOCK: usize = 4096;
 
 /// Builds the surrogate of a study whose method is a quadrature.
-pub(super) fn build(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
-    let mut elements = Elements::new(study, Runner::of(study, model), observer)?;
+pub(super) fn build(
+    campaign: Campaign<'_>,
+    model: Box<dyn Model>,
+    observer: &dyn Observer,
+) -> Result<Surrogate, BuildError> {
+    let mut elements = Elements::new(campaign.study, Runner::of(campaign, model), observer)?;
     elements.run(0)?;
     elements.levels.push(elements.spent);
     loop {

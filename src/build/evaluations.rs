@@ -1,7 +1,7 @@
 //! The design points and what the model answered there.
 
 use super::BuildError;
-use crate::design::{NestedLatinHypercube, Run, RunError, Runner, Samples};
+use crate::design::{Campaign, NestedLatinHypercube, Run, RunError, Runner, Samples};
 use crate::model::Model;
 use crate::progress::Observer;
 use crate::regression::Gradients;
@@ -11,16 +11,20 @@ use crate::study::{Derivatives, DesignKind, Study};
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
 const SOLVER_ACCURACY: f64 = 1e-13;
 
-/// A growing design with one model run per point. No point is run twice.
+/// A growing design with one model run per point. No point is run twice. Points whose runs failed, if the study skips those,
+/// are no samples.
 pub(super) struct Evaluations<'a> {
     study: &'a Study,
     design: NestedLatinHypercube,
     runner: Runner<'a>,
+    /// For each sample, its point of the design.
+    answered: Vec<usize>,
     runs: Vec<Run>,
 }
 
 impl<'a> Evaluations<'a> {
-    pub fn new(study: &'a Study, model: Box<dyn Model>) -> Result<Self, BuildError> {
+    pub fn new(campaign: Campaign<'a>, model: Box<dyn Model>) -> Result<Self, BuildError> {
+        let study = campaign.study;
         if study.fit.derivatives == Derivatives::Always && !model.has_derivatives() {
             return Err(BuildError::NoDerivatives);
         }
@@ -33,7 +37,8 @@ impl<'a> Evaluations<'a> {
                     NestedLatinHypercube::spread_out(study.inputs.dimension(), study.seed)
                 }
             },
-            runner: Runner::of(study, model).with_derivatives(study.uses_derivatives()),
+            runner: Runner::of(campaign, model).with_derivatives(study.uses_derivatives()),
+            answered: Vec::new(),
             runs: Vec::new(),
         })
     }
@@ -42,19 +47,40 @@ impl<'a> Evaluations<'a> {
     pub fn grow_to(&mut self, size: usize, observer: &dyn Observer) -> Result<(), RunError> {
         let old = self.design.len();
         self.design.grow_to(size);
-        let samples = self.samples();
-        let points: Vec<Vec<f64>> = samples.points().skip(old).map(|point| self.study.inputs.physical(point)).collect();
+        let standardized = self.points();
+        let new_points = standardized.points().skip(old);
+        let points: Vec<Vec<f64>> = new_points.map(|point| self.study.inputs.physical(point)).collect();
         observer.begin("model runs", points.len() as u64);
-        let runs = self.runner.run(&points, observer);
+        let runs = self.runner.run_some(&points, observer);
         observer.finish();
-        self.runs.append(&mut runs?);
+        for (i, run) in (old..).zip(runs?) {
+            if let Some(run) = run {
+                self.answered.push(i);
+                self.runs.push(run);
+            }
+        }
         Ok(())
     }
 
-    /// The points in standardized coordinates.
-    pub fn samples(&self) -> Samples {
+    /// Number of runs that failed.
+    pub fn failed(&self) -> usize {
+        self.design.len() - self.runs.len()
+    }
+
+    /// All points of the design in standardized coordinates.
+    fn points(&self) -> Samples {
         let inputs = self.study.inputs.inputs();
         self.design.samples(|j, unit| inputs[j].marginal.standardized_quantile(unit))
+    }
+
+    /// The points whose runs answered, in standardized coordinates.
+    pub fn samples(&self) -> Samples {
+        let points = self.points();
+        if self.failed() == 0 {
+            return points;
+        }
+        let answered = self.answered.iter().flat_map(|&i| points.point(i)).copied();
+        Samples::new(points.dimension(), answered.collect())
     }
 
     /// The model runs, point by point.

@@ -10,14 +10,13 @@ use components::ComponentFit;
 use decision::{Former, judge};
 use evaluations::Evaluations;
 
-use crate::design::RunError;
+use crate::design::{Campaign, Ledger, RunError};
 use crate::fit::Stop;
 use crate::index_set::IndexSetError;
 use crate::model::{Model, ModelError};
 use crate::progress::{Interrupted, Observer};
 use crate::regression::Response;
 use crate::spectrum::{ClusterError, Output};
-use crate::study::Study;
 use crate::surrogate::Surrogate;
 use thiserror::Error;
 
@@ -41,6 +40,18 @@ pub enum BuildError {
     /// The study asks for derivatives, which the model does not have.
     #[error("fit.derivatives: the model has no derivatives; remove the key or set it to \"auto\" or false")]
     NoDerivatives,
+    /// The study skips runs that fail, but there are too many of them.
+    #[error("{failed} of {runs} model runs failed, more than half; the first at {point}: {cause}")]
+    TooManyFailures {
+        /// Runs that failed.
+        failed: usize,
+        /// All runs.
+        runs: usize,
+        /// Where the first failed: the inputs with their values.
+        point: String,
+        /// Why it did.
+        cause: String,
+    },
     /// There are too many candidate terms.
     #[error(transparent)]
     IndexSet(#[from] IndexSetError),
@@ -56,7 +67,7 @@ impl BuildError {
     }
 }
 
-/// Builds the surrogate of a study on the current rayon thread pool: the same bits for any number of threads.
+/// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool: the same bits for any number of threads.
 ///
 /// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives enter the
 /// fit beside the values if the study wants them and the model has them. All components share one nested design. Level by level
@@ -77,8 +88,9 @@ impl BuildError {
 /// assert_eq!(surrogate.modes(), [3, 4]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
-    build_with(study, study.model()?, observer)
+pub fn build<'a>(campaign: impl Into<Campaign<'a>>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
+    let campaign = campaign.into();
+    build_with(campaign, campaign.study.model()?, observer)
 }
 
 /// The build with a model of your own in place of the study's, whose inputs it takes. The hashes in the surrogate are still
@@ -87,12 +99,19 @@ pub fn build(study: &Study, observer: &dyn Observer) -> Result<Surrogate, BuildE
 /// # Errors
 ///
 /// As [`build`].
-pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
+pub fn build_with<'a>(
+    campaign: impl Into<Campaign<'a>>,
+    model: Box<dyn Model>,
+    observer: &dyn Observer,
+) -> Result<Surrogate, BuildError> {
+    let Campaign { study, ledger } = campaign.into();
+    let blank = Ledger::blank(study);
+    let campaign = Campaign { study, ledger: Some(ledger.unwrap_or(&blank)) };
     if study.fit.method.is_quadrature() {
-        return elements::build(study, model, observer);
+        return elements::build(campaign, model, observer);
     }
     let mut fit = ComponentFit::new(study)?;
-    let mut evaluations = Evaluations::new(study, model)?;
+    let mut evaluations = Evaluations::new(campaign, model)?;
     let mut levels = Vec::new();
     let mut grouping: Vec<Output> = Vec::new();
     let mut former: Option<Former> = None;
@@ -101,6 +120,7 @@ pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer)
     loop {
         levels.push(size as u64);
         evaluations.grow_to(size, observer)?;
+        check_failures(campaign, &evaluations)?;
         let outputs = evaluations.outputs()?;
         if groups(&outputs) != groups(&grouping) {
             // Other components: what was learnt of the former ones does not apply.
@@ -144,6 +164,21 @@ pub fn build_with(study: &Study, model: Box<dyn Model>, observer: &dyn Observer)
     }
 }
 
+/// Whether enough runs answered: those that failed leave holes in the design, and more than half of it is no design.
+fn check_failures(campaign: Campaign<'_>, evaluations: &Evaluations<'_>) -> Result<(), BuildError> {
+    let (failed, answered) = (evaluations.failed(), evaluations.runs().len());
+    if failed <= answered && answered >= LEAST_RUNS {
+        return Ok(());
+    }
+    let first = campaign.ledger.and_then(|ledger| ledger.failures().into_iter().next());
+    let (point, cause) =
+        first.map_or_else(Default::default, |failure| (campaign.study.inputs.describe(&failure.point), failure.cause));
+    Err(BuildError::TooManyFailures { failed, runs: failed + answered, point, cause })
+}
+
+/// Fewer runs say nothing of how a component varies.
+const LEAST_RUNS: usize = 2;
+
 /// Levels without a lower estimate, and growth of the design over them, after which more runs are taken to be of no use:
 /// where stability is within rounding of its limit everywhere, or where the model jumps.
 const PATIENCE: usize = 4;
@@ -184,6 +219,7 @@ mod tests {
     use super::*;
     use crate::model::{Clutch, Linearization};
     use crate::progress::Silent;
+    use crate::study::Study;
     use nalgebra::{Complex, DMatrix};
 
     const STUDY: &str = include_str!("../../surrogates/clutch-r1.toml");

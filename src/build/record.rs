@@ -56,7 +56,8 @@ pub(super) fn surrogate(
     gradients: Option<&[Gradients]>,
     levels: &[u64],
 ) -> Surrogate {
-    let training = training(study, fitted, gradients, evaluations.runs().len(), levels.to_vec());
+    let runs = (evaluations.runs().len(), evaluations.failed() as u64);
+    let training = training(study, fitted, gradients, runs, levels.to_vec());
     let whole = Mesh::whole(study.inputs.dimension());
     new(study, whole, outputs, fitted.iter().map(|fit| &fit.result), training)
 }
@@ -116,7 +117,7 @@ fn training(
     study: &Study,
     fitted: &[ComponentResult],
     gradients: Option<&[Gradients]>,
-    runs: usize,
+    (runs, failed): (usize, u64),
     levels: Vec<u64>,
 ) -> Training {
     let method = &study.fit.method;
@@ -143,7 +144,7 @@ fn training(
         design: study.design.kind.name().to_owned(),
         seed: study.seed,
         levels,
-        counts: Counts { values: runs, gradients, failed: 0, final_mesh: runs, direct_computations: runs },
+        counts: Counts { values: runs, gradients, failed, final_mesh: runs, direct_computations: runs + failed },
     }
 }
 

@@ -48,6 +48,23 @@ pub(super) enum Command {
     /// bytes on any number of threads.
     Build(Build),
 
+    /// Write the model runs that a build is waiting for as a table
+    ///
+    /// For models that something else than pcc runs: a scheduler, a cluster, a laboratory. Steps the build of STUDY as far as
+    /// the recorded answers carry it, and writes the points whose answers it needs next. Run them, hand the answers over with pcc
+    /// ingest, and repeat until there are no more: pcc build STUDY --resume then writes the surrogate.
+    Design(Design),
+
+    /// Take answers to the points of a design from a table
+    ///
+    /// RESULTS.csv has the column run of the table that pcc design wrote, or its inputs, and the eigenvalues as re_1, im_1, re_2,
+    /// im_2 and so on in 1/s; a text in a column error marks a run that failed. Rows may come in any order, in part, and more than
+    /// once; a row that contradicts an earlier answer is refused, and then none is taken.
+    Ingest(Ingest),
+
+    /// Show the model runs that are recorded in a journal
+    Journal(ShowJournal),
+
     /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices, critical values
     ///
     /// Needs the surrogate file only. Samples can be confined to a part of the domain (--where), and the proportion be had
@@ -127,6 +144,9 @@ pub(super) struct Run {
     /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for samples]
     #[arg(long, value_name = "S", value_parser = seed())]
     pub seed: Option<u64>,
+
+    #[command(flatten)]
+    pub recording: Recording,
 }
 
 #[derive(Debug, Args)]
@@ -149,6 +169,68 @@ pub(super) struct Build {
     /// Print the study with every default filled in, and build nothing
     #[arg(long)]
     pub show_study: bool,
+
+    #[command(flatten)]
+    pub recording: Recording,
+}
+
+/// Where model runs are recorded.
+#[derive(Debug, Default, Args)]
+pub(super) struct Recording {
+    /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside the surrogate;
+    /// others only while a build lasts]
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
+
+    /// Use the runs of this model that the journal has instead of running them again
+    #[arg(long)]
+    pub resume: bool,
+
+    /// Record nothing
+    #[arg(long, conflicts_with_all = ["journal", "resume"])]
+    pub no_journal: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Design {
+    /// Study file
+    pub study: PathBuf,
+
+    /// Table of the points to run: run, one column per input, constants
+    #[arg(long, value_name = "ROWS.csv")]
+    pub emit: PathBuf,
+
+    /// Journal of the answers [default: <name of the study>.journal in the current folder]
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Ingest {
+    /// Study file
+    pub study: PathBuf,
+
+    /// Table of answers
+    #[arg(value_name = "RESULTS.csv")]
+    pub results: PathBuf,
+
+    /// Journal of the answers [default: <name of the study>.journal in the current folder]
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ShowJournal {
+    /// Journal file
+    pub journal: PathBuf,
+
+    /// Only the runs of this study's model, columns named like its inputs
+    #[arg(long, value_name = "STUDY")]
+    pub study: Option<PathBuf>,
+
+    /// Write every run with its inputs, eigenvalues and errors to a table
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -190,6 +272,9 @@ pub(super) struct Reference {
 
     #[command(flatten)]
     pub sampling: Sampling,
+
+    #[command(flatten)]
+    pub recording: Recording,
 }
 
 #[derive(Debug, Args)]
@@ -212,6 +297,9 @@ pub(super) struct Compare {
     /// Exit with code 1 if the relative error of the stability proportion is larger
     #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
     pub max_error: Option<f64>,
+
+    #[command(flatten)]
+    pub recording: Recording,
 }
 
 #[derive(Debug, Args)]
@@ -238,6 +326,9 @@ pub(super) struct Certify {
     /// Certify against a study that asks another question than the surrogate was built for
     #[arg(long)]
     pub force: bool,
+
+    #[command(flatten)]
+    pub recording: Recording,
 }
 
 #[derive(Debug, Args)]
@@ -270,6 +361,9 @@ pub(super) struct Report {
     /// Number of model runs with --study [default: 10000]
     #[arg(long, value_name = "M", value_parser = run_count, requires = "study")]
     pub runs: Option<u64>,
+
+    #[command(flatten)]
+    pub recording: Recording,
 
     /// Seed of all points
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]

@@ -6,6 +6,7 @@ mod eval_arguments;
 mod points;
 mod progress;
 mod question;
+mod recording;
 
 use crate::progress::Interrupted;
 use arguments::{Arguments, Command};
@@ -96,6 +97,9 @@ fn run(arguments: Arguments) -> anyhow::Result<Ending> {
         Command::Run(options) => commands::run(&context, &options),
         Command::Build(options) => commands::build(&context, &options),
         Command::Eval(options) => commands::eval(&context, &options),
+        Command::Design(options) => commands::design(&context, &options),
+        Command::Ingest(options) => commands::ingest(&context, &options),
+        Command::Journal(options) => commands::journal(&context, &options),
         Command::Reference(options) => commands::reference(&context, &options),
         Command::Compare(options) => commands::compare(&context, &options),
         Command::Certify(options) => commands::certify(&context, &options),

@@ -1,15 +1,21 @@
 //! Models: from parameters to the eigenvalues of a linearised system.
 
 mod clutch;
+pub mod matrices;
 mod parameter;
+pub mod program;
 mod second_order;
+mod unrun;
 
 pub use clutch::{CLUTCH_PARAMETERS, Clutch};
 pub use parameter::{Parameter, Range};
 pub use second_order::{Linearization, SecondOrder};
+pub use unrun::Unrun;
 
 use crate::numerics::eigenvalues::EigenvalueError;
+use matrices::MatricesError;
 use nalgebra::Complex;
+use program::ProgramError;
 use thiserror::Error;
 
 /// Why a model could not be set up or run.
@@ -41,12 +47,83 @@ pub enum ModelError {
         /// Number of inputs.
         expected: usize,
     },
+    /// An entry of a matrix is no number.
+    #[error("{matrix}, row {row}, column {column}: {text} is {value}")]
+    EntryNotFinite {
+        /// Name of the matrix.
+        matrix: &'static str,
+        /// Row, from 1.
+        row: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The entry as it is written.
+        text: String,
+        /// Its value.
+        value: f64,
+    },
+    /// The factor of a term of a matrix is no number.
+    #[error("{matrix}, factor of term {term}: {text} is {value}")]
+    FactorNotFinite {
+        /// Name of the matrix.
+        matrix: &'static str,
+        /// Term, from 1.
+        term: usize,
+        /// The factor as it is written.
+        text: String,
+        /// Its value.
+        value: f64,
+    },
+    /// Matrices of the user's cannot be used.
+    #[error(transparent)]
+    Matrices(Box<MatricesError>),
+    /// A program of the user's gave no answer.
+    #[error(transparent)]
+    Program(Box<ProgramError>),
+    /// Answers come in tables.
+    #[error(
+        "models of kind \"table\" are not run by pcc: write the points with pcc design STUDY --emit rows.csv, run them, and hand the \
+         answers over with pcc ingest STUDY rows.csv"
+    )]
+    Unrun,
     /// The mass matrix cannot be inverted.
     #[error("the mass matrix is singular")]
     SingularMass,
     /// The eigenvalue solver failed.
     #[error(transparent)]
     Eigenvalues(#[from] EigenvalueError),
+}
+
+impl From<MatricesError> for ModelError {
+    fn from(error: MatricesError) -> Self {
+        Self::Matrices(Box::new(error))
+    }
+}
+
+impl From<ProgramError> for ModelError {
+    fn from(error: ProgramError) -> Self {
+        Self::Program(Box::new(error))
+    }
+}
+
+impl ModelError {
+    /// How often a run was tried before this was its end.
+    pub fn attempts(&self) -> u32 {
+        match self {
+            Self::Program(error) => error.attempts,
+            _ => 1,
+        }
+    }
+}
+
+/// How many runs of a model go on at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Concurrency {
+    /// As many as there are threads: the model computes in them.
+    Threads,
+    /// At most so many, whatever the number of threads: the model waits for programs.
+    Jobs(usize),
+    /// All in one call of [`Model::eigenvalues_together`].
+    Together,
 }
 
 /// A system whose eigenvalues depend on parameters.
@@ -77,4 +154,17 @@ pub trait Model: Sync {
         let _ = point;
         Ok(None)
     }
+
+    /// How many runs may go on at once.
+    fn concurrency(&self) -> Concurrency {
+        Concurrency::Threads
+    }
+
+    /// [`Model::eigenvalues`] at many points, an answer each.
+    fn eigenvalues_together(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Complex<f64>>, ModelError>> {
+        points.iter().map(|point| self.eigenvalues(point)).collect()
+    }
+
+    /// Asks runs that are going on to end soon, and later ones not to start; they fail. For models that wait.
+    fn interrupt(&self) {}
 }

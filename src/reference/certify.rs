@@ -1,11 +1,11 @@
 //! A verified bound on the stability proportion: fresh model runs against the surrogate.
 
 use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
+use crate::design::Campaign;
 use crate::eval::{self, EvalError, Plan};
 use crate::progress::Observer;
 use crate::random::Purpose;
 use crate::statistics::{Discordance, Interval};
-use crate::study::Study;
 use crate::surrogate::{Certificate, Surrogate};
 
 /// How the fresh points are drawn, as certificates say it.
@@ -14,7 +14,7 @@ const SCHEME: &str = "independent";
 /// Samples of the surrogate from which its own proportion is known: their interval is a tenth of a percent wide.
 const SURROGATE_SAMPLES: u64 = 1_000_000;
 
-/// Runs the model of `study` at `runs` fresh points and bounds its stability proportion from those at which `surrogate`
+/// Runs the model of a study, or of a campaign that keeps books of its runs, at `runs` fresh points and bounds its stability proportion from those at which `surrogate`
 /// disagrees ([`Discordance::bound`]).
 ///
 /// The points belong to a purpose of their own: they are independent of the design and of all evaluation points,
@@ -25,20 +25,22 @@ const SURROGATE_SAMPLES: u64 = 1_000_000;
 ///
 /// [`ReferenceError`]. Whether the study asks what the surrogate answers is for the caller to decide; inputs
 /// must agree, or [`ReferenceError::OtherProblem`] is returned.
-pub fn certify(
+pub fn certify<'a>(
     surrogate: &Surrogate,
-    study: &Study,
+    campaign: impl Into<Campaign<'a>>,
     runs: u64,
     seed: u64,
     level: f64,
     observer: &dyn Observer,
 ) -> Result<Certificate, ReferenceError> {
+    let campaign = campaign.into();
+    let study = campaign.study;
     if surrogate.inputs != study.inputs {
         return Err(ReferenceError::other_problem(surrogate, study));
     }
     let plan = Plan::new(surrogate);
     let mut discordance = Discordance { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
-    for_each_chunk(study, runs, seed, Purpose::Certification, observer, |_, points, found| {
+    for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |_, points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
         for (run, &max_re) in found.iter().zip(&block.max_re) {
             let (model, predicted) = (run.spectrum.max_re() < 0.0, max_re < 0.0);

@@ -1,17 +1,16 @@
 //! A surrogate against its model on the same points.
 
 use super::monte_carlo::{ReferenceError, check_problem, for_each_chunk, surrogate_block};
-use crate::design::Run;
+use crate::design::{Campaign, Run};
 use crate::eval::Plan;
 use crate::progress::Observer;
 use crate::random::Purpose;
 use crate::spectrum::{Block, Component, Output, OutputKind, SpectrumError};
 use crate::statistics::{Moments, Proportion};
-use crate::study::Study;
 use crate::surrogate::Surrogate;
 use nalgebra::Complex;
 
-/// Standard deviations below this share of the mean are rounding.
+/// Standard deviations below this share of the mean, and both below this share of a component's scale, are rounding.
 const CONSTANT: f64 = 1e-12;
 
 /// Errors of one component, relative to the model.
@@ -23,18 +22,24 @@ pub struct ComponentError {
     pub model: Moments,
     /// Moments from the surrogate.
     pub surrogate: Moments,
+    /// What values of the component are of the order of, if that is known; else 0.
+    pub scale: f64,
 }
 
 impl ComponentError {
-    /// 100 |difference of the means|/|mean of the model|; `None` if the model's is zero.
+    /// 100 |difference of the means|/|mean of the model|; 0 if both are zero but for rounding, `None` if only the model's is zero.
     pub fn mean_error_percent(&self) -> Option<f64> {
+        let is_zero = |moments: &Moments| moments.mean().abs() < CONSTANT * self.scale;
+        if is_zero(&self.model) && is_zero(&self.surrogate) {
+            return Some(0.0);
+        }
         relative_error_percent(self.surrogate.mean(), self.model.mean())
     }
 
     /// 100 |difference of the variances|/variance of the model; 0 if both only vary by rounding, `None` if only the
     /// model's is zero.
     pub fn variance_error_percent(&self) -> Option<f64> {
-        let rounding = CONSTANT * self.model.mean().abs();
+        let rounding = CONSTANT * self.model.mean().abs().max(self.scale);
         let is_constant = |moments: &Moments| moments.variance() <= rounding * rounding;
         if is_constant(&self.model) && is_constant(&self.surrogate) {
             return Some(0.0);
@@ -94,17 +99,19 @@ fn relative_error_percent(found: f64, truth: f64) -> Option<f64> {
 ///
 /// [`ReferenceError::OtherProblem`] if the surrogate was built for another problem, else as
 /// [`super::monte_carlo`].
-pub fn compare(
+pub fn compare<'a>(
     surrogate: &Surrogate,
-    study: &Study,
+    campaign: impl Into<Campaign<'a>>,
     samples: u64,
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Comparison, ReferenceError> {
+    let campaign = campaign.into();
+    let study = campaign.study;
     check_problem(surrogate, study)?;
     let plan = Plan::new(surrogate);
     let mut comparison = Comparison::new(samples);
-    for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, points, runs| {
+    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |runner, points, runs| {
         let mut modes = surrogate.modes();
         modes.sort_unstable();
         if modes != runner.modes() {
@@ -185,6 +192,7 @@ pub(super) fn mode_errors(
                 name: format!("{name}_{mode}"),
                 model: Moments::of(&model),
                 surrogate: Moments::of(&found),
+                scale: 0.0,
             });
         }
     }
@@ -210,6 +218,7 @@ fn invariant_errors(
         name: component.name.clone(),
         model: Moments::of(&values[component.id]),
         surrogate: Moments::of(&block.components[component.id]),
+        scale: component.scale,
     };
     let components: Vec<&Component> = clusters.iter().flat_map(|output| &output.components).collect();
     Ok(components.iter().map(error).collect())

@@ -1,6 +1,6 @@
 //! Monte Carlo on the initial model.
 
-use crate::design::{Run, RunError, Runner};
+use crate::design::{Campaign, Run, RunError, Runner};
 use crate::eval::{EvalError, Plan, evaluate_points};
 use crate::input::random_point;
 use crate::model::ModelError;
@@ -82,7 +82,7 @@ pub fn check_problem(surrogate: &Surrogate, study: &Study) -> Result<(), Referen
 /// Runs the model at samples 0 … `samples` − 1 of the study's input space for `purpose`, for evaluation the points that
 /// [`crate::eval::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized points and runs.
 pub(super) fn for_each_chunk(
-    study: &Study,
+    campaign: Campaign<'_>,
     samples: u64,
     seed: u64,
     purpose: Purpose,
@@ -92,7 +92,8 @@ pub(super) fn for_each_chunk(
     if samples == 0 {
         return Err(ReferenceError::NoSamples);
     }
-    let mut runner = Runner::new(study)?;
+    let study = campaign.study;
+    let mut runner = Runner::new(campaign)?;
     observer.begin("model runs", samples);
     for start in (0..samples).step_by(CHUNK as usize) {
         let standardized: Vec<Vec<f64>> = (start..samples.min(start + CHUNK))
@@ -141,14 +142,14 @@ pub struct Reference {
 /// # Errors
 ///
 /// [`ReferenceError`]; a failed run is reported with its parameters.
-pub fn monte_carlo(
-    study: &Study,
+pub fn monte_carlo<'a>(
+    campaign: impl Into<Campaign<'a>>,
     samples: u64,
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Reference, ReferenceError> {
     let mut reference: Option<Reference> = None;
-    for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
+    for_each_chunk(campaign.into(), samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
         let outputs = mode_outputs(runner.modes());
         let mut block = Block::with_capacity(2 * outputs.len(), outputs.len(), runs.len());
         for run in runs {

@@ -2,6 +2,7 @@
 
 use super::compare::{Comparison, mode_errors};
 use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
+use crate::design::Campaign;
 use crate::eval::Plan;
 use crate::input::random_point;
 use crate::parallel::try_map;
@@ -34,9 +35,16 @@ impl<'a> ModelSample<'a> {
     /// # Errors
     ///
     /// As [`super::monte_carlo`].
-    pub fn new(study: &'a Study, samples: u64, seed: u64, observer: &dyn Observer) -> Result<Self, ReferenceError> {
+    pub fn new(
+        campaign: impl Into<Campaign<'a>>,
+        samples: u64,
+        seed: u64,
+        observer: &dyn Observer,
+    ) -> Result<Self, ReferenceError> {
+        let campaign = campaign.into();
+        let study = campaign.study;
         let mut sample = Self { study, seed, modes: Vec::new(), eigenvalues: Vec::new(), max_re: Vec::new() };
-        for_each_chunk(study, samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
+        for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
             if sample.modes.is_empty() {
                 sample.modes = runner.modes().to_vec();
                 sample.eigenvalues = vec![Vec::new(); sample.modes.len()];

@@ -1,6 +1,8 @@
 //! What a build spent and how well each component is fitted.
 
 use super::table::{Align, Table, count, significant};
+use crate::design::Failure;
+use crate::input::InputSpace;
 use crate::study::DesignKind;
 use crate::surrogate::{SettingValue, StopReason, Surrogate};
 use serde::Serialize;
@@ -45,6 +47,51 @@ pub struct BuildReport {
     pub warnings: Vec<String>,
     /// Wall-clock time.
     pub elapsed_seconds: f64,
+    /// Where the runs come from.
+    #[serde(flatten)]
+    pub runs: RecordedRuns,
+}
+
+/// Where the runs of a build come from.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RecordedRuns {
+    /// The journal they are recorded in.
+    pub journal: Option<String>,
+    /// Runs that were recorded there already.
+    #[serde(rename = "reused_runs")]
+    pub reused: u64,
+    /// Runs that failed and were left out.
+    #[serde(rename = "failed_runs")]
+    pub failed: Vec<FailedRun>,
+}
+
+/// A run that failed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FailedRun {
+    /// The inputs with their values.
+    pub point: String,
+    /// Why.
+    pub cause: String,
+}
+
+impl FailedRun {
+    /// A failure at a point of these inputs.
+    pub fn new(inputs: &InputSpace, failure: &Failure) -> Self {
+        Self { point: inputs.describe(&failure.point), cause: failure.cause.clone() }
+    }
+}
+
+impl RecordedRuns {
+    /// What to know of runs that failed.
+    fn warning(&self) -> Option<String> {
+        let first = self.failed.first()?;
+        Some(format!(
+            "{} model runs failed and were left out, nothing in their place; the first at {}: {}",
+            count(self.failed.len() as u64),
+            first.point,
+            first.cause
+        ))
+    }
 }
 
 /// Fit of one component.
@@ -222,7 +269,7 @@ impl FitReport {
 
 impl BuildReport {
     /// The report of a surrogate written to `file`.
-    pub fn new(surrogate: &Surrogate, file: String, bytes: u64, elapsed_seconds: f64) -> Self {
+    pub fn new(surrogate: &Surrogate, file: String, bytes: u64, elapsed_seconds: f64, runs: RecordedRuns) -> Self {
         Self {
             study: surrogate.provenance.study_name.clone(),
             file,
@@ -233,7 +280,8 @@ impl BuildReport {
             elements: surrogate.mesh.elements().len(),
             final_mesh_computations: surrogate.training.counts.final_mesh,
             levels: surrogate.training.levels.clone(),
-            warnings: FitReport::warnings_of(surrogate),
+            warnings: runs.warning().into_iter().chain(FitReport::warnings_of(surrogate)).collect(),
+            runs,
             components: FitReport::of(surrogate),
             elapsed_seconds,
         }
@@ -266,10 +314,14 @@ impl fmt::Display for BuildReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{}: {} model runs{} ({}), {:.2} s, seed {}\n",
+            "{}: {} model runs{}{} ({}), {:.2} s, seed {}\n",
             self.study,
             count(self.direct_computations),
             with_derivatives(self.runs_with_derivatives, self.direct_computations),
+            match self.runs.reused {
+                0 => String::new(),
+                reused => format!(", {} of them recorded earlier", count(reused)),
+            },
             match self.elements {
                 1 => format!("design levels {}", level_list(&self.levels)),
                 many => format!("{} in the final mesh of {many} elements", count(self.final_mesh_computations)),

@@ -1,6 +1,7 @@
 //! What users read: each report is data that serialises to JSON, and a text rendered from it.
 
 mod build;
+mod campaign;
 mod certify;
 mod charts;
 mod compare;
@@ -18,7 +19,8 @@ mod survey;
 mod sweep;
 mod table;
 
-pub use build::{BuildReport, FitReport};
+pub use build::{BuildReport, FailedRun, FitReport, RecordedRuns};
+pub use campaign::{DesignReport, IngestReport, JournalModel, JournalReport};
 pub use certify::CertifyReport;
 pub use compare::CompareReport;
 pub use eval::{Asked, EvalReport};

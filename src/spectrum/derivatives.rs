@@ -30,6 +30,32 @@ pub struct ReducedSystem {
 }
 
 impl ReducedSystem {
+    /// The system of these parts: frequency ranks from 1, T, and one derivative per input. `None` if their sizes do not fit together.
+    pub fn from_parts(
+        modes: Vec<usize>,
+        state_matrix: DMatrix<Complex<f64>>,
+        derivatives: Vec<DMatrix<Complex<f64>>>,
+    ) -> Option<Self> {
+        let shape = (modes.len(), modes.len());
+        let fits = std::iter::once(&state_matrix).chain(&derivatives).all(|matrix| matrix.shape() == shape);
+        fits.then_some(Self { modes, state_matrix, derivatives })
+    }
+
+    /// Frequency ranks of its modes, from 1.
+    pub fn modes(&self) -> &[usize] {
+        &self.modes
+    }
+
+    /// T, upper triangular with the eigenvalues of the modes on its diagonal, in 1/s.
+    pub fn state_matrix(&self) -> &DMatrix<Complex<f64>> {
+        &self.state_matrix
+    }
+
+    /// D_j = W ∂A/∂x_j V, one per input.
+    pub fn derivatives(&self) -> &[DMatrix<Complex<f64>>] {
+        &self.derivatives
+    }
+
     /// Reduces a system to the modes with the given ranks. `derivatives` are those of the state matrix by each input, in
     /// physical units; `spectrum` are the modes of `schur`.
     ///

@@ -1,10 +1,28 @@
 //! Defaults of a study: at most one formula in the number of inputs r each.
 
+use super::model::Kind;
 use super::{DesignKind, FitMethod};
 use crate::spectrum::{Modes, Target};
 
 pub(super) const SEED: u64 = 1;
 pub(super) const MODES: Modes = Modes::All;
+
+/// The paper's for its clutch, else what needs fewer runs.
+pub(super) fn target(kind: Kind) -> Target {
+    match kind {
+        Kind::Clutch => Target::Eigenvalues,
+        Kind::Matrices | Kind::Command | Kind::Table => Target::Invariants,
+    }
+}
+
+/// Processes of a program that go on at once.
+pub(super) const JOBS: i64 = 1;
+
+/// Folder for the folders of runs, in the current one.
+pub(super) const WORK_FOLDER: &str = "runs";
+
+/// Of a program that has not begun to answer otherwise.
+pub(super) const VERSION: &str = "1";
 
 /// The paper's accuracy target and highest degree.
 pub(super) const S2_TARGET: f64 = 0.999;

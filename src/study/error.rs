@@ -1,6 +1,7 @@
 //! What can be wrong with a study file.
 
 use crate::input::{InputError, MarginalError};
+use crate::model::matrices::MatricesError;
 use thiserror::Error;
 
 /// A key of the study and its line.
@@ -53,6 +54,72 @@ pub enum StudyError {
         found: String,
         /// Words that are known.
         expected: String,
+    },
+    /// A setting of other models.
+    #[error("{place}: belongs to models of kind {kinds}; choose that kind or remove the key")]
+    KeyOfKind {
+        /// Where.
+        place: Place,
+        /// The kinds it belongs to.
+        kinds: String,
+    },
+    /// A setting without which the model does not work.
+    #[error("line {line}: model.{key} is missing: {meaning}; add it")]
+    MissingKey {
+        /// Line of `model.kind`.
+        line: usize,
+        /// The key.
+        key: &'static str,
+        /// What it is.
+        meaning: &'static str,
+    },
+    /// The name of an input or constant that is no name.
+    #[error(
+        "{place}: names have letters, digits and '_', start with a letter or '_', and at most {most} characters; rename it"
+    )]
+    Name {
+        /// Where.
+        place: Place,
+        /// Longest name.
+        most: usize,
+    },
+    /// A name that is a column of tables of results.
+    #[error("{place}: is a column of tables of results, as are run, error, re_1, im_1 and so on; rename it")]
+    ReservedName {
+        /// Where.
+        place: Place,
+    },
+    /// Something is wrong with matrices.
+    #[error("{place}: {cause}")]
+    Matrices {
+        /// Where.
+        place: Place,
+        /// What.
+        cause: Box<MatricesError>,
+    },
+    /// An argument that names a file beside the study, which runs in folders of their own would not find.
+    #[error(
+        "{place}: {argument} is a file beside the study, but runs have folders of their own; write {{study}}/{argument}"
+    )]
+    FileBesideStudy {
+        /// Where.
+        place: Place,
+        /// The argument.
+        argument: String,
+    },
+    /// Runs that may be skipped, with a method that needs every one.
+    #[error(
+        "{place}: quadrature needs the answer at every node, so no run can be skipped; use \"stop\" or another fit.method"
+    )]
+    SkippingOfQuadrature {
+        /// Where.
+        place: Place,
+    },
+    /// Derivatives of a model that has none.
+    #[error("{place}: programs and tables answer eigenvalues alone, so there are no derivatives; remove the key")]
+    NoDerivatives {
+        /// Where.
+        place: Place,
     },
     /// An input or constant the model does not have.
     #[error("{place}: the model has no such parameter; it has {known}")]

@@ -101,6 +101,9 @@ impl Lines<'_> {
             Method::MultiElement => FitMethod::MultiElement(self.multi_element(raw)?),
         };
         match derivatives_place {
+            Some(place) if derivatives == Derivatives::Always && !model.has_derivatives() => {
+                Err(StudyError::NoDerivatives { place })
+            }
             Some(place) if derivatives == Derivatives::Always && !method.can_use_derivatives() => {
                 Err(StudyError::DerivativesOfQuadrature { place })
             }

@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use super::{FitMethod, FullExpansion, ModelSettings, MultiElement, Solver, Study};
-use crate::digest::sha256;
+use super::{FitMethod, FullExpansion, ModelSettings, MultiElement, Solver, Study, Table};
+use crate::digest::{sha256, sha256_bytes};
 use crate::input::Marginal;
 use crate::model::CLUTCH_PARAMETERS;
+use crate::model::matrices::{Description, Layout, Term};
 use crate::spectrum::{Modes, Target};
 
 pub(super) fn problem_hash(study: &Study) -> String {
@@ -48,17 +49,77 @@ pub(super) fn study_hash(study: &Study) -> String {
     sha256(text.as_bytes())
 }
 
-/// What has one true answer, as text, one fact a line: constants with the nominal values that the study left alone,
-/// inputs in the order that gives them meaning, numbers by their shortest exact decimal.
-fn problem(study: &Study) -> String {
-    let ModelSettings::Clutch { constants } = &study.model;
+pub(super) fn model_hash(study: &Study) -> [u8; 32] {
+    let mut text = model(study);
+    for name in study.inputs.names() {
+        let _ = writeln!(text, "input {name}");
+    }
+    sha256_bytes(text.as_bytes())
+}
+
+/// The model as text, one fact a line: for the clutch with the nominal values that the study left alone; numbers by their shortest
+/// exact decimal, what users wrote as they wrote it.
+fn model(study: &Study) -> String {
     let mut text = format!("model {}\n", study.model.kind());
-    for parameter in CLUTCH_PARAMETERS {
-        if study.inputs.names().all(|input| input != parameter.name) {
-            let given = constants.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
-            let _ = writeln!(text, "constant {} {:?}", parameter.name, given.unwrap_or(parameter.nominal));
+    match &study.model {
+        ModelSettings::Clutch { constants } => {
+            for parameter in CLUTCH_PARAMETERS {
+                if study.inputs.names().all(|input| input != parameter.name) {
+                    let given = constants.iter().find(|(name, _)| name == parameter.name).map(|(_, value)| *value);
+                    let _ = writeln!(text, "constant {} {:?}", parameter.name, given.unwrap_or(parameter.nominal));
+                }
+            }
+        }
+        ModelSettings::Matrices(description) => matrices(&mut text, description),
+        // Not how and where it is run, but what.
+        ModelSettings::Command(command) => {
+            let _ = writeln!(text, "command {:?} {}", command.arguments, command.shell);
+            answers(&mut text, &command.answers);
+        }
+        ModelSettings::Table(table) => answers(&mut text, table),
+    }
+    text
+}
+
+fn answers(text: &mut String, table: &Table) {
+    let _ = writeln!(text, "eigenvalues {}\nversion {:?}", table.eigenvalues, table.version);
+    for (name, value) in &table.constants {
+        let _ = writeln!(text, "constant {name} {value:?}");
+    }
+}
+
+fn matrices(text: &mut String, description: &Description) {
+    for (name, value) in &description.constants {
+        let _ = writeln!(text, "constant {name} {value:?}");
+    }
+    for (name, expression) in &description.helpers {
+        let _ = writeln!(text, "let {name} {expression:?}");
+    }
+    for matrix in &description.matrices {
+        for Term { factor, form, layout } in &matrix.terms {
+            let _ = write!(text, "{} {} ", matrix.role.name(), form.name());
+            match factor {
+                None => text.push_str("1 "),
+                Some(factor) => {
+                    let _ = write!(text, "{factor:?} ");
+                }
+            }
+            let _ = match layout {
+                Layout::Rows(rows) => writeln!(text, "rows {rows:?}"),
+                Layout::Diagonal(list) => writeln!(text, "diagonal {list:?}"),
+                Layout::Entries { size, list } => writeln!(text, "entries {size} {list:?}"),
+                // Not the name of the file, but what is in it.
+                Layout::File { matrix, .. } => {
+                    writeln!(text, "file {} {} {:?}", matrix.rows, matrix.columns, matrix.entries)
+                }
+            };
         }
     }
+}
+
+/// What has one true answer, as text: the model, its inputs in the order that gives them meaning, and what of the spectrum is asked.
+fn problem(study: &Study) -> String {
+    let mut text = model(study);
     for input in study.inputs.inputs() {
         let Marginal::Uniform(uniform) = &input.marginal;
         let _ = writeln!(text, "input {} uniform {:?} {:?}", input.name, uniform.lower(), uniform.upper());

@@ -4,19 +4,24 @@ mod defaults;
 mod error;
 mod fit;
 mod identity;
+mod matrices;
+mod model;
 mod print;
+mod print_model;
 mod raw;
 mod settings;
 mod validate;
 
 pub use error::{Place, StudyError};
 pub use settings::{
-    Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, FullExpansion, ModelSettings, MultiElement,
-    Smooth, Solver, SpectrumSettings, Stepwise,
+    Command, Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, FullExpansion, ModelSettings,
+    MultiElement, Smooth, Solver, SpectrumSettings, Stepwise, Table,
 };
 
 use crate::input::InputSpace;
-use crate::model::{Clutch, Model, ModelError};
+use crate::model::matrices::Matrices;
+use crate::model::{Clutch, Model, ModelError, Unrun};
+use std::path::Path;
 
 /// The format of study files this version reads.
 pub const STUDY_FORMAT: u32 = 1;
@@ -60,13 +65,22 @@ pub struct Study {
 }
 
 impl Study {
-    /// Reads a study.
+    /// Reads a study. Files that it names are looked for in the current folder.
     ///
     /// # Errors
     ///
     /// [`StudyError`] names the key and the line, what was found and what to do.
     pub fn from_toml(text: &str) -> Result<Self, StudyError> {
-        validate::study(text)
+        Self::from_toml_in(text, Path::new("."))
+    }
+
+    /// Reads a study that lies in `folder`, where the files that it names are looked for.
+    ///
+    /// # Errors
+    ///
+    /// As [`Study::from_toml`].
+    pub fn from_toml_in(text: &str, folder: &Path) -> Result<Self, StudyError> {
+        validate::study(text, folder)
     }
 
     /// The study as a file with every default filled in and every key explained.
@@ -80,15 +94,27 @@ impl Study {
     ///
     /// [`ModelError`] if constants or inputs do not fit the model; a study read from a file was checked for that.
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
-        let ModelSettings::Clutch { constants } = &self.model;
-        let constants: Vec<(&str, f64)> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let uncertain: Vec<&str> = self.inputs.names().collect();
-        Ok(Box::new(Clutch::new(&constants, &uncertain)?))
+        match &self.model {
+            ModelSettings::Clutch { constants } => {
+                let constants: Vec<_> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+                Ok(Box::new(Clutch::new(&constants, &uncertain)?))
+            }
+            ModelSettings::Matrices(description) => Ok(Box::new(Matrices::new(description, &uncertain)?)),
+            ModelSettings::Command(command) => Ok(Box::new(command.program(&uncertain))),
+            ModelSettings::Table(_) => Ok(Box::new(Unrun)),
+        }
     }
 
     /// Whether fits use derivatives: asked for, or left open for invariants of a model that has them.
     pub fn uses_derivatives(&self) -> bool {
         self.fit.use_derivatives(self.spectrum.target, &self.model)
+    }
+
+    /// Hash of the model: its kind, its constants and the names of its inputs, not their distributions. Runs of models with
+    /// the same hash at the same point have the same answer. SHA-256.
+    pub fn model_hash(&self) -> [u8; 32] {
+        identity::model_hash(self)
     }
 
     /// Hash of what is asked: model, constants, inputs and spectrum. Two studies with the same hash have the same true

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{DesignKind, FitMethod, FullExpansion, ModelSettings, MultiElement, STUDY_FORMAT, Solver, Study};
+use super::print_model::{self, unit_of};
+use super::{DesignKind, FitMethod, FullExpansion, MultiElement, STUDY_FORMAT, Solver, Study};
 use crate::input::Marginal;
-use crate::model::CLUTCH_PARAMETERS;
 use crate::spectrum::{Modes, Target};
 
 /// Column at which explanations start.
@@ -15,7 +15,7 @@ pub(super) fn study(study: &Study) -> String {
     file.line("format", STUDY_FORMAT, "of this file");
     file.line("name", format!("{:?}", study.name), "also names the files built from it");
     file.line("seed", study.seed, "of the design");
-    model(&mut file, &study.model);
+    print_model::model(&mut file, &study.model);
     inputs(&mut file, study);
 
     file.table("spectrum");
@@ -115,50 +115,37 @@ fn multi_element(file: &mut Printer, settings: &MultiElement) {
     file.line("elements", settings.elements, "at most");
 }
 
-fn model(file: &mut Printer, model: &ModelSettings) {
-    let ModelSettings::Clutch { constants } = model;
-    file.table("model");
-    file.line("kind", format!("{:?}", model.kind()), "");
-    if !constants.is_empty() {
-        file.table("model.constants");
-    }
-    for (name, value) in constants {
-        let unit = CLUTCH_PARAMETERS.iter().find(|parameter| parameter.name == name).map_or("", |p| p.unit);
-        file.line(name, float(*value), unit);
-    }
-}
-
 fn inputs(file: &mut Printer, study: &Study) {
     file.table("inputs");
     for input in study.inputs.inputs() {
         let Marginal::Uniform(uniform) = &input.marginal;
         let (lower, upper) = (float(uniform.lower()), float(uniform.upper()));
-        let unit = CLUTCH_PARAMETERS.iter().find(|parameter| parameter.name == input.name).map_or("", |p| p.unit);
+        let unit = unit_of(&study.model, &input.name);
         let value = format!("{{ distribution = \"uniform\", lower = {lower}, upper = {upper} }}");
         file.line(&input.name, value, unit);
     }
 }
 
 /// Shortest text that reads back as the same number, always with a point or an exponent.
-fn float(value: f64) -> String {
+pub(super) fn float(value: f64) -> String {
     format!("{value:?}")
 }
 
 #[derive(Default)]
-struct Printer {
+pub(super) struct Printer {
     text: String,
 }
 
 impl Printer {
-    fn table(&mut self, name: &str) {
+    pub(super) fn table(&mut self, name: &str) {
         let _ = write!(self.text, "\n[{name}]\n");
     }
 
-    fn comment(&mut self, text: &str) {
+    pub(super) fn comment(&mut self, text: &str) {
         let _ = writeln!(self.text, "# {text}");
     }
 
-    fn line(&mut self, key: &str, value: impl std::fmt::Display, comment: &str) {
+    pub(super) fn line(&mut self, key: &str, value: impl std::fmt::Display, comment: &str) {
         let mut line = format!("{key} = {value}");
         if !comment.is_empty() {
             let width = COMMENT_COLUMN.saturating_sub(line.chars().count() + 1);

@@ -32,6 +32,39 @@ pub(super) struct Model {
     pub kind: Spanned<String>,
     #[serde(default)]
     pub constants: Ordered<f64>,
+    #[serde(rename = "let")]
+    pub helpers: Option<Spanned<Ordered<Helper>>>,
+    #[serde(rename = "M")]
+    pub mass: Option<Spanned<toml::Value>>,
+    #[serde(rename = "C")]
+    pub damping: Option<Spanned<toml::Value>>,
+    #[serde(rename = "K")]
+    pub stiffness: Option<Spanned<toml::Value>>,
+    #[serde(rename = "G")]
+    pub gyroscopic: Option<Spanned<toml::Value>>,
+    #[serde(rename = "N")]
+    pub circulatory: Option<Spanned<toml::Value>>,
+    #[serde(rename = "A")]
+    pub state: Option<Spanned<toml::Value>>,
+    pub command: Option<Spanned<Vec<String>>>,
+    pub shell: Option<Spanned<bool>>,
+    pub mode: Option<Spanned<String>>,
+    pub eigenvalues: Option<Spanned<i64>>,
+    pub jobs: Option<Spanned<i64>>,
+    pub timeout: Option<Spanned<f64>>,
+    pub retries: Option<Spanned<i64>>,
+    pub on_failure: Option<Spanned<String>>,
+    pub work: Option<Spanned<String>>,
+    pub keep: Option<Spanned<String>>,
+    pub version: Option<Spanned<String>>,
+}
+
+/// The value of a helper.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "a helper must be an expression in quotes, like \"k_p / 4\"")]
+pub(super) enum Helper {
+    Number(f64),
+    Expression(String),
 }
 
 #[derive(Debug, Deserialize)]
@@ -141,13 +174,14 @@ pub(super) fn parse(text: &str) -> Result<Study, StudyError> {
 
 /// The parser's message with its excerpt of the file, in words of the file instead of words of the program.
 fn syntax(error: toml::de::Error) -> StudyError {
-    const WORDS: [(&str, &str); 9] = [
+    const WORDS: [(&str, &str); 10] = [
         ("missing field", "missing key"),
         ("unknown field", "unknown key"),
         ("expected i64", "expected a whole number"),
         ("expected f64", "expected a number"),
         ("expected struct Input", "expected a table like { distribution = \"uniform\", lower = 0.0, upper = 1.0 }"),
         ("expected struct", "expected a table"),
+        ("expected a sequence", "expected a list"),
         ("expected a string", "expected a text in quotes"),
         ("floating point", "number"),
         (" as i128", ""),

@@ -2,13 +2,15 @@
 
 use std::fmt::Debug;
 use std::ops::RangeInclusive;
+use std::path::Path;
 use toml::Spanned;
 
 use super::error::{Place, StudyError};
-use super::settings::{DesignKind, DesignSettings, FitMethod, FitSettings, ModelSettings, SpectrumSettings};
+use super::model::Kind;
+use super::settings::{DesignKind, DesignSettings, FitMethod, FitSettings, SpectrumSettings};
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::input::{Input, InputSpace, Marginal, Uniform};
-use crate::model::{CLUTCH_PARAMETERS, Parameter};
+use crate::model::Parameter;
 use crate::spectrum::{Modes, Target};
 
 /// Design sizes above this need more memory for the regression than a workstation has.
@@ -24,7 +26,7 @@ const MOST_EQUATIONS: usize = 8_000;
 /// Univariate polynomial values that a design may need: two gigabytes.
 const LARGEST_TABLES: usize = 250_000_000;
 
-pub(super) fn study(text: &str) -> Result<Study, StudyError> {
+pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     let lines = Lines { text };
     if let Some(format) = raw::format(text)?.format.filter(|format| *format.get_ref() != i64::from(STUDY_FORMAT)) {
         let place = lines.place("format", &format);
@@ -36,13 +38,16 @@ pub(super) fn study(text: &str) -> Result<Study, StudyError> {
         Some(seed) => lines.integer("seed", seed, 0..=i64::MAX)? as u64,
         None => defaults::SEED,
     };
-    lines.word("model.kind", &raw.model.kind, &[("clutch", ())])?;
-    let inputs = lines.inputs(raw.inputs)?;
-    let constants = lines.constants(raw.model.constants, &inputs)?;
+    let kind = lines.kind(&raw.model.kind)?;
+    let inputs = lines.inputs(raw.inputs, kind)?;
     let dimension = inputs.dimension();
-    let spectrum = lines.spectrum(raw.spectrum)?;
-    let model = ModelSettings::Clutch { constants };
+    let spectrum = lines.spectrum(raw.spectrum, kind)?;
+    let failure_place = raw.model.on_failure.as_ref().map(|word| lines.place("model.on_failure", word));
+    let model = lines.model(kind, raw.model, &inputs, folder)?;
     let fit = lines.fit(raw.fit, spectrum.target, dimension, &model)?;
+    if let Some(place) = failure_place.filter(|_| fit.method.is_quadrature() && model.skips_failures()) {
+        return Err(StudyError::SkippingOfQuadrature { place });
+    }
     let derivatives = fit.use_derivatives(spectrum.target, &model);
     let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
     let max_degree = fit.method.max_degree();
@@ -78,7 +83,12 @@ impl Lines<'_> {
         Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
     }
 
-    fn out_of_range<T: Debug>(&self, key: &str, value: &Spanned<T>, expected: impl Into<String>) -> StudyError {
+    pub(super) fn out_of_range<T: Debug>(
+        &self,
+        key: &str,
+        value: &Spanned<T>,
+        expected: impl Into<String>,
+    ) -> StudyError {
         StudyError::OutOfRange {
             place: self.place(key, value),
             found: format!("{:?}", value.get_ref()),
@@ -143,25 +153,23 @@ impl Lines<'_> {
         })
     }
 
-    fn parameter<T>(&self, table: &str, name: &str, value: &Spanned<T>) -> Result<&'static Parameter, StudyError> {
-        CLUTCH_PARAMETERS.iter().find(|parameter| parameter.name == name).ok_or_else(|| StudyError::UnknownParameter {
-            place: self.place(format!("{table}.{name}"), value),
-            known: CLUTCH_PARAMETERS.map(|parameter| parameter.name).join(", "),
-        })
-    }
-
-    fn inputs(&self, table: Spanned<raw::Ordered<raw::Input>>) -> Result<InputSpace, StudyError> {
+    fn inputs(&self, table: Spanned<raw::Ordered<raw::Input>>, kind: Kind) -> Result<InputSpace, StudyError> {
         let place = self.place("inputs", &table);
         let mut inputs = Vec::new();
         for (name, raw) in table.into_inner().0 {
-            let parameter = self.parameter("inputs", &name, &raw)?;
-            inputs.push(Input { marginal: self.marginal(parameter, &raw)?, name });
+            let parameter = self.parameter_of_kind(kind, "inputs", &name, &raw)?;
+            inputs.push(Input { marginal: self.marginal(&name, parameter, &raw)?, name });
         }
         InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
     }
 
-    fn marginal(&self, parameter: &Parameter, raw: &Spanned<raw::Input>) -> Result<Marginal, StudyError> {
-        let key = format!("inputs.{}", parameter.name);
+    fn marginal(
+        &self,
+        name: &str,
+        parameter: Option<&Parameter>,
+        raw: &Spanned<raw::Input>,
+    ) -> Result<Marginal, StudyError> {
+        let key = format!("inputs.{name}");
         let input = raw.get_ref();
         self.word(&format!("{key}.distribution"), &input.distribution, &[("uniform", ())])?;
         let place = self.place(&key, raw);
@@ -172,34 +180,17 @@ impl Lines<'_> {
         };
         let uniform =
             Uniform::new(lower, upper).map_err(|cause| StudyError::Distribution { place: place.clone(), cause })?;
-        if !(parameter.range.contains(lower) && parameter.range.contains(upper)) {
+        if let Some(parameter) = parameter.filter(|p| !(p.range.contains(lower) && p.range.contains(upper))) {
             let expected = format!("{} over the whole interval", parameter.range.describe());
             return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });
         }
         Ok(Marginal::Uniform(uniform))
     }
 
-    fn constants(&self, table: raw::Ordered<f64>, inputs: &InputSpace) -> Result<Vec<(String, f64)>, StudyError> {
-        let mut constants = Vec::new();
-        for (name, value) in table.0 {
-            let key = format!("model.constants.{name}");
-            let parameter = self.parameter("model.constants", &name, &value)?;
-            if inputs.names().any(|input| input == name) {
-                return Err(StudyError::ConstantAndInput { place: self.place(key, &value) });
-            }
-            if !parameter.range.contains(*value.get_ref()) {
-                return Err(self.out_of_range(&key, &value, format!("a number {}", parameter.range.describe())));
-            }
-            constants.push((name, value.into_inner()));
-        }
-        constants.sort_by(|a, b| a.0.cmp(&b.0));
-        Ok(constants)
-    }
-
-    fn spectrum(&self, raw: raw::Spectrum) -> Result<SpectrumSettings, StudyError> {
+    fn spectrum(&self, raw: raw::Spectrum, kind: Kind) -> Result<SpectrumSettings, StudyError> {
         let target = match raw.target {
             Some(word) => self.word("spectrum.target", &word, &TARGETS.map(|target| (target.name(), target)))?,
-            None => Target::Eigenvalues,
+            None => defaults::target(kind),
         };
         let modes = match raw.modes {
             Some(modes) => self.modes(modes)?,

@@ -1,10 +1,12 @@
 //! `pcc build`
 
-use super::super::arguments::{Build, FileFormat};
+use super::super::arguments::{Build, FileFormat, Recording};
+use super::super::recording::{self, journal_of_build};
 use super::super::{Context, Ending};
 use super::{interruptible, keep_other_files, read_study};
 use crate::artifact::{Format, check_writable, encode, save};
-use crate::report::BuildReport;
+use crate::design::Campaign;
+use crate::report::{BuildReport, FailedRun, RecordedRuns};
 use crate::study::Study;
 use crate::surrogate::Surrogate;
 use serde::Serialize;
@@ -29,7 +31,8 @@ pub(in super::super) fn build(context: &Context, options: &Build) -> anyhow::Res
         .unwrap_or_else(|| PathBuf::from(format!("{}.{}", study.name, asked.unwrap_or(Format::Binary).extension())));
     let format = asked.unwrap_or_else(|| Format::of_path(&path));
     keep_other_files(&path)?;
-    let (_, report) = build_to_file(context, &study, &options.study.display().to_string(), &path, format)?;
+    let source = options.study.display().to_string();
+    let (_, report) = build_to_file(context, &study, &source, &path, format, &options.recording)?;
     context.print(&report)?;
     Ok(Ending::Done)
 }
@@ -41,15 +44,29 @@ pub(super) fn build_to_file(
     source: &str,
     path: &Path,
     format: Format,
+    recording: &Recording,
 ) -> anyhow::Result<(Surrogate, BuildReport)> {
     check_writable(path)?;
+    let books = recording::open(context, study, recording, Some(journal_of_build(study, path)))?;
     let start = Instant::now();
-    let surrogate = crate::build::build(study, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error.is_interruption(), source))?;
+    let campaign = Campaign { study, ledger: Some(&books.ledger) };
+    let surrogate = match crate::build::build(campaign, &context.terminal) {
+        Ok(surrogate) => surrogate,
+        Err(error) => {
+            books.give_up(context, error.is_interruption());
+            return Err(interruptible(error.clone(), error.is_interruption(), source));
+        }
+    };
     let elapsed = start.elapsed().as_secs_f64();
     let bytes = encode(&surrogate, format)?;
     save(path, &bytes)?;
-    let report = BuildReport::new(&surrogate, path.display().to_string(), bytes.len() as u64, elapsed);
+    let runs = RecordedRuns {
+        journal: books.kept_journal().map(|journal| journal.display().to_string()),
+        reused: books.ledger.reused(),
+        failed: books.ledger.failures().iter().map(|failure| FailedRun::new(&study.inputs, failure)).collect(),
+    };
+    books.close();
+    let report = BuildReport::new(&surrogate, path.display().to_string(), bytes.len() as u64, elapsed, runs);
     Ok((surrogate, report))
 }
 

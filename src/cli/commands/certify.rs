@@ -1,10 +1,12 @@
 //! `pcc certify`
 
 use super::super::arguments::Certify;
+use super::super::recording::open_here;
 use super::super::{Context, Ending};
 use super::convert::refuse_lossy;
 use super::{interruptible, keep_other_files, read_study, read_surrogate};
 use crate::artifact::{Format, check_writable, encode, save};
+use crate::design::Campaign;
 use crate::reference::certify as certify_with_model;
 use crate::report::CertifyReport;
 use anyhow::bail;
@@ -38,8 +40,10 @@ pub(in super::super) fn certify(context: &Context, options: &Certify) -> anyhow:
     let format = options.output.as_ref().map_or(artifact.format, |path| Format::of_path(path));
     keep_other_files(output)?;
     check_writable(output)?;
+    let books = open_here(context, &study, &options.recording)?;
+    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let start = Instant::now();
-    let certificate = certify_with_model(&surrogate, &study, options.runs, options.seed, LEVEL, &context.terminal)
+    let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
         .map_err(|error| interruptible(error.clone(), error.is_interruption(), &source.to_string()))?;
     surrogate.certificates.push(certificate);
     save(output, &encode(&surrogate, format)?)?;

@@ -4,8 +4,11 @@ mod build;
 mod certify;
 mod compare;
 mod convert;
+mod design;
 mod eval;
+mod ingest;
 mod inspect;
+mod journal;
 mod merge;
 mod reference;
 mod report;
@@ -16,8 +19,11 @@ pub(super) use build::build;
 pub(super) use certify::certify;
 pub(super) use compare::compare;
 pub(super) use convert::convert;
+pub(super) use design::design;
 pub(super) use eval::eval;
+pub(super) use ingest::ingest;
 pub(super) use inspect::inspect;
+pub(super) use journal::journal;
 pub(super) use merge::merge;
 pub(super) use reference::reference;
 pub(super) use report::report;
@@ -27,6 +33,7 @@ pub(super) use run::run;
 use super::arguments::Arguments;
 use super::{Ending, print};
 use crate::artifact::{self, Artifact};
+use crate::journal as model_journal;
 use crate::part::MARK;
 use crate::progress::Interrupted;
 use crate::study::Study;
@@ -92,15 +99,19 @@ fn keep_unmarked_files(output: &Path, mark: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses to replace a surrogate or a part of an evaluation by a table or a picture.
+/// Refuses to replace a surrogate, a part of an evaluation or a journal by a table or a picture.
 fn keep_results(output: &Path) -> anyhow::Result<()> {
     if !output.is_file() {
         return Ok(());
     }
     let mut start = Vec::new();
     let read = File::open(output).and_then(|file| file.take(64).read_to_end(&mut start));
-    if read.is_err() || artifact::looks_like_a_surrogate(&start) || start.starts_with(MARK.as_bytes()) {
-        bail!("{}: is a surrogate or a part of an evaluation; name another output", output.display());
+    let is_result = artifact::looks_like_a_surrogate(&start) || start.starts_with(MARK.as_bytes());
+    if read.is_err() || is_result || start.starts_with(&model_journal::MAGIC) {
+        bail!(
+            "{}: is a surrogate, a part of an evaluation or a journal of model runs; name another output",
+            output.display()
+        );
     }
     Ok(())
 }
@@ -118,7 +129,8 @@ fn read_study(path: &Path) -> anyhow::Result<Study> {
     let Ok(text) = String::from_utf8(bytes) else {
         bail!("{}: is not text; give a study, a .toml file", path.display());
     };
-    Study::from_toml(&text).with_context(|| path.display().to_string())
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Study::from_toml_in(&text, folder).with_context(|| path.display().to_string())
 }
 
 fn read_surrogate(path: &Path) -> anyhow::Result<Artifact> {

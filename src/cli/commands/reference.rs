@@ -2,12 +2,12 @@
 
 use super::super::arguments::Reference;
 use super::super::points::{Evaluated, PointsFile};
+use super::super::recording::open_here;
 use super::super::{Context, Ending};
 use super::{PointsReport, interruptible, keep_inputs, read_study};
-use crate::design::{RunError, Runner};
+use crate::design::{Campaign, RunError, Runner};
 use crate::reference::monte_carlo;
 use crate::report::EvalReport;
-use crate::study::Study;
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,18 +16,16 @@ pub(in super::super) fn reference(context: &Context, options: &Reference) -> any
     let sampling = &options.sampling;
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
         keep_inputs(out, &[points, &options.study])?;
-        context.print(&at_points(
-            context,
-            &study,
-            options.study.display().to_string(),
-            points,
-            out,
-            sampling.extrapolate,
-        )?)?;
+        let books = open_here(context, &study, &options.recording)?;
+        let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+        let source = options.study.display().to_string();
+        context.print(&at_points(context, campaign, source, points, out, sampling.extrapolate)?)?;
         return Ok(Ending::Done);
     }
+    let books = open_here(context, &study, &options.recording)?;
+    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let start = Instant::now();
-    let found = monte_carlo(&study, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
+    let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
         .map_err(|error| interruptible(error.clone(), error.is_interruption(), &options.study.display().to_string()))?;
     let elapsed = start.elapsed().as_secs_f64();
     context.print(&EvalReport::of_model(&study.name, &found.outputs, &found.summary, sampling.seed, elapsed))?;
@@ -36,14 +34,14 @@ pub(in super::super) fn reference(context: &Context, options: &Reference) -> any
 
 fn at_points(
     context: &Context,
-    study: &Study,
+    campaign: Campaign<'_>,
     source: String,
     points: &Path,
     out: &Path,
     extrapolate: bool,
 ) -> anyhow::Result<PointsReport> {
-    let mut runner = Runner::new(study)?;
-    let file = PointsFile::open(points, &study.inputs, extrapolate)?;
+    let mut runner = Runner::new(campaign)?;
+    let file = PointsFile::open(points, &campaign.study.inputs, extrapolate)?;
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
         let runs = runner
             .run(group, &context.terminal)

@@ -1,10 +1,12 @@
 //! `pcc report`
 
 use super::super::arguments::Report;
+use super::super::recording::open_here;
 use super::super::{Context, Ending};
 use super::eval::sample;
 use super::{SURROGATE_PAGE, interruptible, keep_inputs, keep_unmarked_files, read_study, read_surrogate};
 use crate::artifact::{check_writable, save};
+use crate::design::Campaign;
 use crate::eval::{Plan, evaluate_points};
 use crate::input::random_points;
 use crate::random::Purpose;
@@ -12,6 +14,7 @@ use crate::reference::{ModelSample, check_problem};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
 use crate::spectrum::Block;
 use crate::surrogate::Surrogate;
+use anyhow::Context as _;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -37,8 +40,10 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
     let model = match (&study, &options.study) {
         (Some(study), Some(path)) => {
             let what = path.display().to_string();
-            let found = check_problem(surrogate, study)
-                .and_then(|()| ModelSample::new(study, options.runs.unwrap_or(RUNS), options.seed, &context.terminal))
+            check_problem(surrogate, study).with_context(|| what.clone())?;
+            let books = open_here(context, study, &options.recording)?;
+            let campaign = Campaign { study, ledger: Some(&books.ledger) };
+            let found = ModelSample::new(campaign, options.runs.unwrap_or(RUNS), options.seed, &context.terminal)
                 .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
                 .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
             Some(found)

@@ -1,12 +1,14 @@
 //! `pcc run`: the main job end to end.
 
 use super::super::arguments::Run;
+use super::super::recording::{self, journal_of_build};
 use super::super::{Context, Ending};
 use super::build::build_to_file;
 use super::compare::judge;
 use super::eval::sample;
 use super::{keep_other_files, read_study};
 use crate::artifact::Format;
+use crate::design::Campaign;
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table, count};
 use crate::spectrum::Target;
 use crate::study::Study;
@@ -83,8 +85,11 @@ fn build_and_compare(
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
     let path = options.output.join(format!("{}.{}", study.name, Format::Binary.extension()));
     keep_other_files(&path)?;
-    let (surrogate, build) = build_to_file(context, &study, source, &path, Format::Binary)?;
-    let compare = judge(context, &surrogate, &study, source, COMPARE_SAMPLES, seed)
+    let (surrogate, build) = build_to_file(context, &study, source, &path, Format::Binary, &options.recording)?;
+    let journal = study.model.is_external().then(|| journal_of_build(&study, &path));
+    let books = recording::open(context, &study, &options.recording, journal)?;
+    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+    let compare = judge(context, &surrogate, campaign, source, COMPARE_SAMPLES, seed)
         .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
     Ok((surrogate, build, compare))
 }

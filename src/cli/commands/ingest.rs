@@ -1,0 +1,90 @@
+//! `pcc ingest`: answers that others computed.
+
+use super::super::arguments::Ingest;
+use super::super::recording::{journal_here, plural, remark};
+use super::super::{Context, Ending};
+use super::design::{refuse_derivatives, step};
+use super::read_study;
+use crate::design::{Ledger, RowProblem, harvest};
+use crate::journal::{Contents, Journal, Outcome};
+use crate::model::program::results_table::read_results;
+use crate::report::IngestReport;
+use crate::study::Study;
+use anyhow::{Context as _, anyhow, bail};
+use std::fs::File;
+use std::path::Path;
+
+/// Rows that are named when they cannot be taken.
+const SHOWN_PROBLEMS: usize = 10;
+
+pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::Result<Ending> {
+    let study = read_study(&options.study)?;
+    let source = options.study.display().to_string();
+    refuse_derivatives(&study, &source)?;
+    let path = options.journal.clone().unwrap_or_else(|| journal_here(&study));
+    let Some(answers) = study.model.answers() else {
+        bail!(
+            "{source}: pcc runs this model itself, so it takes no results; they belong to models of kind \"command\" and \"table\""
+        );
+    };
+    let inputs: Vec<String> = study.inputs.names().map(str::to_owned).collect();
+    let shown = options.results.display();
+    let file = File::open(&options.results).with_context(|| format!("{shown} cannot be read"))?;
+    let rows = read_results(file, &inputs, answers.eigenvalues).with_context(|| shown.to_string())?;
+
+    // Held from the first look to the last record, so that no other process records in between.
+    let (journal, mut contents) = Journal::open(&path)?;
+    remark(context, &path, &contents);
+    let known = Ledger::blank(&study).knowing(&contents);
+    let (asked, was_complete) = step(context, &study, &contents, &source)?;
+    let outcome = |point: &[f64]| known.find(point).cloned();
+    let found = harvest(&study, &asked, outcome, &rows).map_err(|problems| refusal(&options.results, &problems))?;
+    journal.append(&found.records.iter().collect::<Vec<_>>())?;
+    let failed = found.records.iter().filter(|record| matches!(record.outcome, Outcome::Failed { .. })).count();
+    let answered = found.records.len() - failed;
+    let repeated = found.repeated;
+    contents.records.extend(found.records);
+    let (missing, complete) = after(context, &study, &contents, &source, was_complete)?;
+    context.print(&IngestReport {
+        study: study.name.clone(),
+        source,
+        journal: path.display().to_string(),
+        rows: rows.len() as u64,
+        answered: answered as u64,
+        failed: failed as u64,
+        repeated: repeated as u64,
+        missing,
+        complete,
+    })?;
+    Ok(Ending::Done)
+}
+
+/// How many answers the build waits for now, and whether it is complete.
+fn after(
+    context: &Context,
+    study: &Study,
+    contents: &Contents,
+    source: &str,
+    was_complete: bool,
+) -> anyhow::Result<(u64, bool)> {
+    if was_complete {
+        return Ok((0, true));
+    }
+    let step = step(context, study, contents, source);
+    let (asked, complete) = step.context("the results are recorded, but the build cannot go on from them")?;
+    Ok((asked.iter().filter(|asked| !asked.is_known).count() as u64, complete))
+}
+
+fn refusal(path: &Path, problems: &[RowProblem]) -> anyhow::Error {
+    let lines: Vec<String> = problems.iter().take(SHOWN_PROBLEMS).map(|problem| format!("  {problem}")).collect();
+    let more = match problems.len().saturating_sub(SHOWN_PROBLEMS) {
+        0 => String::new(),
+        more => format!("\n  and {}", plural(more, "other row")),
+    };
+    anyhow!(
+        "{}: {} cannot be taken, so none was:\n{}{more}",
+        path.display(),
+        plural(problems.len(), "row"),
+        lines.join("\n")
+    )
+}

@@ -1,0 +1,97 @@
+//! `pcc journal`: what is recorded of model runs.
+
+use super::super::arguments::ShowJournal;
+use super::super::recording::remark;
+use super::super::{Context, Ending};
+use super::{keep_inputs, keep_results, read_study};
+use crate::artifact::save_with;
+use crate::digest::hexadecimal;
+use crate::journal::{Contents, Journal, Outcome, Record};
+use crate::report::{JournalModel, JournalReport};
+use anyhow::bail;
+use std::io::{self, Write};
+
+pub(in super::super) fn journal(context: &Context, options: &ShowJournal) -> anyhow::Result<Ending> {
+    let study = options.study.as_ref().map(|path| read_study(path)).transpose()?;
+    let mut contents = Journal::read(&options.journal)?;
+    let (torn_bytes, damaged_bytes) = (contents.torn_bytes, contents.damaged_bytes);
+    // Reading cuts nothing.
+    remark(context, &options.journal, &Contents { torn_bytes: 0, damaged_bytes, records: Vec::new() });
+    if let Some(study) = &study {
+        contents.records.retain(|record| record.model == study.model_hash());
+    }
+    if let Some(csv) = &options.csv {
+        keep_inputs(csv, &[&options.journal])?;
+        keep_results(csv)?;
+        let names: Option<Vec<&str>> = study.as_ref().map(|study| study.inputs.names().collect());
+        let inputs = contents.records.iter().map(|record| record.point.len()).max().unwrap_or(0);
+        if names.is_none() && contents.records.iter().any(|record| record.point.len() != inputs) {
+            bail!(
+                "{}: has runs of models with different numbers of inputs, which are no table; choose a model with --study",
+                options.journal.display()
+            );
+        }
+        let header = names.map_or_else(
+            || (1..=inputs).map(|j| format!("x_{j}")).collect(),
+            |names| names.into_iter().map(str::to_owned).collect::<Vec<_>>(),
+        );
+        save_with(csv, |writer| export(writer, &header, &contents.records))?;
+    }
+    context.print(&JournalReport {
+        journal: options.journal.display().to_string(),
+        models: models(&contents.records),
+        torn_bytes,
+        damaged_bytes,
+        csv: options.csv.as_ref().map(|csv| csv.display().to_string()),
+    })?;
+    Ok(Ending::Done)
+}
+
+/// Runs by model, in the order in which models first appear.
+fn models(records: &[Record]) -> Vec<JournalModel> {
+    let mut models: Vec<JournalModel> = Vec::new();
+    for record in records {
+        let hash = hexadecimal(&record.model);
+        let at = models.iter().position(|model| model.hash == hash).unwrap_or_else(|| {
+            models.push(JournalModel { hash, inputs: record.point.len() as u64, ..JournalModel::default() });
+            models.len() - 1
+        });
+        let model = &mut models[at];
+        match record.outcome {
+            Outcome::Answered(_) => model.answered += 1,
+            Outcome::Failed { .. } => model.failed += 1,
+        }
+        model.seconds += record.seconds;
+    }
+    models
+}
+
+/// One row per record: its number, the model, how it ended, its inputs and its eigenvalues, numbers to the last bit.
+fn export(writer: &mut dyn Write, inputs: &[String], records: &[Record]) -> io::Result<()> {
+    let count = |record: &Record| match &record.outcome {
+        Outcome::Answered(computation) => computation.eigenvalues.len(),
+        Outcome::Failed { .. } => 0,
+    };
+    let eigenvalues = records.iter().map(count).max().unwrap_or(0);
+    let mut table = csv::Writer::from_writer(writer);
+    let mut header: Vec<String> = ["record", "model", "status", "attempts", "seconds"].map(str::to_owned).to_vec();
+    header.extend(inputs.iter().cloned());
+    header.extend((1..=eigenvalues).flat_map(|k| [format!("re_{k}"), format!("im_{k}")]));
+    header.push("error".to_owned());
+    table.write_record(&header)?;
+    for (number, record) in (1..).zip(records) {
+        let (status, attempts, lambdas, error) = match &record.outcome {
+            Outcome::Answered(computation) => ("answered", 1, &computation.eigenvalues[..], ""),
+            Outcome::Failed { attempts, cause } => ("failed", *attempts, &[][..], cause.as_str()),
+        };
+        let (model, seconds) = (hexadecimal(&record.model), record.seconds);
+        let mut row: Vec<String> =
+            vec![number.to_string(), model, status.to_owned(), attempts.to_string(), seconds.to_string()];
+        row.extend(record.point.iter().map(|value| format!("{value:?}")));
+        row.extend(lambdas.iter().flat_map(|lambda| [format!("{:?}", lambda.re), format!("{:?}", lambda.im)]));
+        row.extend(std::iter::repeat_n(String::new(), 2 * (eigenvalues - lambdas.len())));
+        row.push(error.to_owned());
+        table.write_record(&row)?;
+    }
+    table.flush()
+}

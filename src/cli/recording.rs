@@ -1,0 +1,146 @@
+//! Journals of model runs on the command line: which one, what is used of it, and what to say about it.
+
+use super::Context;
+use super::arguments::Recording;
+use crate::design::Ledger;
+use crate::journal::{Contents, Journal};
+use crate::study::{ModelSettings, Study};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Runs of pcc's own models that took less time together are sooner run again than resumed.
+const WORTH_KEEPING: Duration = Duration::from_secs(10);
+
+/// The books of a command's model runs.
+pub(super) struct Books {
+    /// What is known and recorded.
+    pub ledger: Ledger,
+    /// The journal, if there is one.
+    pub journal: Option<PathBuf>,
+    /// Whether the journal is of use only until the command ends: pcc runs the model itself, nobody asked for the journal, and
+    /// there is nothing else in it.
+    is_disposable: bool,
+}
+
+impl Books {
+    /// The journal, if it stays when the command ends.
+    pub fn kept_journal(&self) -> Option<&Path> {
+        self.journal.as_deref().filter(|_| !self.is_disposable)
+    }
+
+    /// Ends work that failed or was interrupted. The journal of an interrupted command is kept if it took long to fill.
+    pub fn give_up(self, context: &Context, is_interruption: bool) {
+        let took_long = is_interruption && self.ledger.recorded_time() >= WORTH_KEEPING;
+        match &self.journal {
+            Some(journal) if (took_long || !self.is_disposable) && self.ledger.recorded() > 0 => {
+                let runs = plural(self.ledger.recorded() as usize, "model run");
+                context.say(&format!("{}: {runs} recorded; --resume goes on from there", journal.display()));
+            }
+            _ => self.close(),
+        }
+    }
+
+    /// Keeps a journal that somebody may want, and removes one that nobody does.
+    pub fn close(self) {
+        if let Some(path) = self.journal.as_ref().filter(|_| self.is_disposable) {
+            // Removed before it is unlocked; if it stays, it does no harm.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+/// Where a build records its runs unless it is told otherwise: beside the surrogate, named after the study.
+pub(super) fn journal_of_build(study: &Study, surrogate: &Path) -> PathBuf {
+    surrogate.with_file_name(journal_name(study))
+}
+
+/// Where other commands look for a journal: in the current folder.
+pub(super) fn journal_here(study: &Study) -> PathBuf {
+    PathBuf::from(journal_name(study))
+}
+
+fn journal_name(study: &Study) -> String {
+    format!("{}.journal", study.name)
+}
+
+/// Opens the books. Without a `default`, runs are recorded only if the user names a journal.
+pub(super) fn open(
+    context: &Context,
+    study: &Study,
+    options: &Recording,
+    default: Option<PathBuf>,
+) -> anyhow::Result<Books> {
+    let is_table = matches!(study.model, ModelSettings::Table(_));
+    // Without a journal there is nothing to resume from, and nothing that answers in tables.
+    let wants_journal = options.resume || is_table;
+    let chosen = options.journal.clone().or(default).or_else(|| wants_journal.then(|| journal_here(study)));
+    let Some(path) = chosen.filter(|_| !options.no_journal) else {
+        return Ok(Books { ledger: Ledger::blank(study), journal: None, is_disposable: false });
+    };
+    let is_new = !path.exists();
+    let is_unasked = options.journal.is_none() && !options.resume && !study.model.is_external();
+    let (journal, contents) = match Journal::open(&path) {
+        // Builds of pcc's own models may run beside each other, as long as nobody asked for a journal.
+        Err(_) if is_unasked => {
+            return Ok(Books { ledger: Ledger::blank(study), journal: None, is_disposable: false });
+        }
+        opened => opened?,
+    };
+    remark(context, &path, &contents);
+    let mut ledger = Ledger::recording(study, journal);
+    let own = contents.records.iter().filter(|record| record.model == study.model_hash()).count();
+    let (shown, runs) = (path.display(), plural(own, "model run"));
+    if options.resume || is_table {
+        ledger = ledger.knowing(&contents);
+        let others = contents.records.len() - own;
+        match (own, others) {
+            (0, 0) if is_new && options.resume => {
+                context.say(&format!("{shown}: is new, so there is nothing to resume from"))
+            }
+            (0, others) if others > 0 => context.say(&format!(
+                "{shown}: has {} of other models and none of this one; model, constants or inputs have changed",
+                plural(others, "run")
+            )),
+            (0, _) => {}
+            _ => context.say(&format!("{shown}: {runs} recorded")),
+        }
+    } else if own > 0 && study.model.is_external() {
+        context.say(&format!("{shown}: {runs} recorded earlier are not used; stop and add --resume to use them"));
+    }
+    if is_table {
+        ledger = ledger.asking();
+    }
+    let is_disposable = options.journal.is_none() && !study.model.is_external() && contents.records.len() == own;
+    Ok(Books { ledger, journal: Some(path), is_disposable })
+}
+
+/// Says what is wrong with a journal that can be used all the same.
+pub(super) fn remark(context: &Context, path: &Path, contents: &Contents) {
+    if contents.torn_bytes > 0 {
+        context.say(&format!(
+            "{}: cut {} of a run whose record was not complete when an earlier build ended",
+            path.display(),
+            plural(contents.torn_bytes as usize, "byte")
+        ));
+    }
+    if contents.damaged_bytes > 0 {
+        context.say(&format!(
+            "{}: {} between records are damaged and were passed over; the runs recorded there are lost",
+            path.display(),
+            plural(contents.damaged_bytes as usize, "byte")
+        ));
+    }
+}
+
+/// Opens the books of a command that runs the model at random points: those of programs are recorded, others only if the user
+/// names a journal.
+pub(super) fn open_here(context: &Context, study: &Study, options: &Recording) -> anyhow::Result<Books> {
+    let is_program = matches!(study.model, ModelSettings::Command(_));
+    open(context, study, options, is_program.then(|| journal_here(study)))
+}
+
+/// `1 run`, `2 runs`.
+pub(super) fn plural(count: usize, noun: &str) -> String {
+    let digits = crate::report::count(count as u64);
+    if count == 1 { format!("{digits} {noun}") } else { format!("{digits} {noun}s") }
+}

@@ -1,0 +1,14 @@
+//! Models whose answers come in tables.
+
+use super::{Model, ModelError};
+use nalgebra::Complex;
+
+/// A model that pcc cannot run.
+#[derive(Debug, Clone, Copy)]
+pub struct Unrun;
+
+impl Model for Unrun {
+    fn eigenvalues(&self, _: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+        Err(ModelError::Unrun)
+    }
+}
