@@ -211,10 +211,14 @@ fn entries_that_stop_being_numbers_are_named_at_the_run() {
     .unwrap();
     let model = study.model().unwrap();
     let said = |point: &[f64]| model.eigenvalues(point).unwrap_err().to_string();
-    assert_eq!(said(&[1.0, 0.5]), "K, row 1, column 1: sqrt(k - 1) is NaN");
-    assert_eq!(said(&[1.0, 2.0]), "C, factor of term 1: 1/(k - 2) is inf");
+    assert_eq!(said(&[1.0, 0.5]), "K, row 1, column 1: sqrt(k - 1) is NaN; entries must be finite numbers");
+    assert_eq!(said(&[1.0, 2.0]), "C, factor of term 1: 1/(k - 2) is inf; factors must be finite numbers");
     assert_eq!(said(&[0.0, 3.0]), "the mass matrix is singular");
     assert!(model.eigenvalues(&[1.0, 3.0]).is_ok());
+    // A value, but no slope.
+    assert!(model.eigenvalues(&[1.0, 1.0]).is_ok());
+    let slope = model.linearization(&[1.0, 1.0]).unwrap_err().to_string();
+    assert!(slope.starts_with("K, row 1, column 1: the derivative of sqrt(k - 1) by k is inf; keep"), "{slope}");
     // And a build says where.
     let error = build(&study, &Silent).unwrap_err().to_string();
     assert!(error.starts_with("the model run at m = ") && error.contains(" failed: "), "{error}");

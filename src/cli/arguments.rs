@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use super::eval_arguments::{Eval, Merge};
+use super::run_arguments::{Design, Ingest, Recording, ShowJournal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 use std::path::PathBuf;
@@ -172,65 +173,6 @@ pub(super) struct Build {
 
     #[command(flatten)]
     pub recording: Recording,
-}
-
-/// Where model runs are recorded.
-#[derive(Debug, Default, Args)]
-pub(super) struct Recording {
-    /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside the surrogate;
-    /// others only while a build lasts]
-    #[arg(long, value_name = "FILE")]
-    pub journal: Option<PathBuf>,
-
-    /// Use the runs of this model that the journal has instead of running them again
-    #[arg(long)]
-    pub resume: bool,
-
-    /// Record nothing
-    #[arg(long, conflicts_with_all = ["journal", "resume"])]
-    pub no_journal: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct Design {
-    /// Study file
-    pub study: PathBuf,
-
-    /// Table of the points to run: run, one column per input, constants
-    #[arg(long, value_name = "ROWS.csv")]
-    pub emit: PathBuf,
-
-    /// Journal of the answers [default: <name of the study>.journal in the current folder]
-    #[arg(long, value_name = "FILE")]
-    pub journal: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct Ingest {
-    /// Study file
-    pub study: PathBuf,
-
-    /// Table of answers
-    #[arg(value_name = "RESULTS.csv")]
-    pub results: PathBuf,
-
-    /// Journal of the answers [default: <name of the study>.journal in the current folder]
-    #[arg(long, value_name = "FILE")]
-    pub journal: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ShowJournal {
-    /// Journal file
-    pub journal: PathBuf,
-
-    /// Only the runs of this study's model, columns named like its inputs
-    #[arg(long, value_name = "STUDY")]
-    pub study: Option<PathBuf>,
-
-    /// Write every run with its inputs, eigenvalues and errors to a table
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -7,6 +7,7 @@ mod points;
 mod progress;
 mod question;
 mod recording;
+mod run_arguments;
 
 use crate::progress::Interrupted;
 use arguments::{Arguments, Command};

@@ -1,7 +1,7 @@
 //! Journals of model runs on the command line: which one, what is used of it, and what to say about it.
 
 use super::Context;
-use super::arguments::Recording;
+use super::run_arguments::Recording;
 use crate::design::Ledger;
 use crate::journal::{Contents, Journal};
 use crate::study::{ModelSettings, Study};

@@ -47,32 +47,6 @@ pub enum ModelError {
         /// Number of inputs.
         expected: usize,
     },
-    /// An entry of a matrix is no number.
-    #[error("{matrix}, row {row}, column {column}: {text} is {value}")]
-    EntryNotFinite {
-        /// Name of the matrix.
-        matrix: &'static str,
-        /// Row, from 1.
-        row: usize,
-        /// Column, from 1.
-        column: usize,
-        /// The entry as it is written.
-        text: String,
-        /// Its value.
-        value: f64,
-    },
-    /// The factor of a term of a matrix is no number.
-    #[error("{matrix}, factor of term {term}: {text} is {value}")]
-    FactorNotFinite {
-        /// Name of the matrix.
-        matrix: &'static str,
-        /// Term, from 1.
-        term: usize,
-        /// The factor as it is written.
-        text: String,
-        /// Its value.
-        value: f64,
-    },
     /// Matrices of the user's cannot be used.
     #[error(transparent)]
     Matrices(Box<MatricesError>),

@@ -1,7 +1,8 @@
 //! `pcc build`
 
-use super::super::arguments::{Build, FileFormat, Recording};
+use super::super::arguments::{Build, FileFormat};
 use super::super::recording::{self, journal_of_build};
+use super::super::run_arguments::Recording;
 use super::super::{Context, Ending};
 use super::{interruptible, keep_other_files, read_study};
 use crate::artifact::{Format, check_writable, encode, save};

@@ -1,7 +1,7 @@
 //! `pcc design`: the model runs that a build is waiting for.
 
-use super::super::arguments::Design;
 use super::super::recording::{journal_here, remark};
+use super::super::run_arguments::Design;
 use super::super::{Context, Ending};
 use super::{interruptible, keep_inputs, keep_results, read_study};
 use crate::artifact::{check_writable, save_with};

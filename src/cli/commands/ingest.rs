@@ -1,7 +1,7 @@
 //! `pcc ingest`: answers that others computed.
 
-use super::super::arguments::Ingest;
 use super::super::recording::{journal_here, plural, remark};
+use super::super::run_arguments::Ingest;
 use super::super::{Context, Ending};
 use super::design::{refuse_derivatives, step};
 use super::read_study;

@@ -1,7 +1,7 @@
 //! `pcc journal`: what is recorded of model runs.
 
-use super::super::arguments::ShowJournal;
 use super::super::recording::remark;
+use super::super::run_arguments::ShowJournal;
 use super::super::{Context, Ending};
 use super::{keep_inputs, keep_results, read_study};
 use crate::artifact::save_with;

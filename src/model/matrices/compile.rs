@@ -29,7 +29,8 @@ pub(super) fn compile(description: &Description, inputs: &[&str]) -> Result<Matr
     }
     let Builder { compiler, sources, .. } = builder;
     let program = compiler.finish().map_err(|cause| MatricesError::Program(Box::new(cause)))?;
-    Ok(Matrices { program, system, sources, workspaces: Mutex::new(Vec::new()) })
+    let inputs = inputs.iter().map(|&name| name.to_owned()).collect();
+    Ok(Matrices { program, system, inputs, sources, workspaces: Mutex::new(Vec::new()) })
 }
 
 /// Inputs, constants and helpers.

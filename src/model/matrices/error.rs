@@ -170,7 +170,7 @@ pub enum MatricesError {
         /// Why.
         cause: Box<ExpressionError>,
     },
-    /// A number that is none, whatever the inputs.
+    /// An entry that is no number: at a point, or whatever the inputs.
     #[error("{matrix}, row {row}, column {column}: {text} is {value}; entries must be finite numbers")]
     NotFinite {
         /// Name of the matrix.
@@ -184,7 +184,7 @@ pub enum MatricesError {
         /// Its value.
         value: f64,
     },
-    /// A factor that is no number, whatever the inputs.
+    /// A factor that is no number: at a point, or whatever the inputs.
     #[error("{matrix}, factor of term {term}: {text} is {value}; factors must be finite numbers")]
     FactorNotFinite {
         /// Name of the matrix.
@@ -194,6 +194,23 @@ pub enum MatricesError {
         /// The factor as it is written.
         text: String,
         /// Its value.
+        value: f64,
+    },
+    /// An entry or factor that is a number, but has no finite derivative.
+    #[error(
+        "{matrix}, {place}: the derivative of {text} by {input} is {value}; keep the input away from there, or set fit.derivatives = \
+         false"
+    )]
+    Slope {
+        /// Name of the matrix.
+        matrix: &'static str,
+        /// Row and column, or the term whose factor it is.
+        place: String,
+        /// The expression as it is written.
+        text: String,
+        /// The input.
+        input: String,
+        /// The derivative.
         value: f64,
     },
     /// All expressions together are too long.
@@ -223,7 +240,8 @@ impl MatricesError {
             | Self::Entry { matrix, .. }
             | Self::Factor { matrix, .. }
             | Self::NotFinite { matrix, .. }
-            | Self::FactorNotFinite { matrix, .. } => Some(matrix),
+            | Self::FactorNotFinite { matrix, .. }
+            | Self::Slope { matrix, .. } => Some(matrix),
             Self::SingularMass => Some("M"),
             _ => None,
         }

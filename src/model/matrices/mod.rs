@@ -12,11 +12,11 @@ mod matrix_market;
 
 pub use description::{Description, Entry, Form, Layout, Matrix, Role, Term};
 pub use error::MatricesError;
-pub use matrix_market::{CoordinateMatrix, MatrixMarketError, read_matrix_market};
+pub use matrix_market::{CoordinateMatrix, LARGEST_DIMENSION, MatrixMarketError, read_matrix_market};
 
 use super::second_order::{Linearization, SecondOrder};
 use super::{Model, ModelError};
-use crate::expression::{Evaluated, Program, Workspace};
+use crate::expression::{Derivative, Evaluated, Program, Workspace};
 use crate::numerics::eigenvalues::eigenvalues;
 use assembly::Assembly;
 use nalgebra::{Complex, DMatrix};
@@ -55,6 +55,8 @@ pub const MOST_ROWS: usize = 500;
 pub struct Matrices {
     program: Program,
     system: System,
+    /// Names of the inputs.
+    inputs: Vec<String>,
     /// For each output of the program, where it stands.
     sources: Vec<Source>,
     /// Workspaces that no thread is using.
@@ -102,17 +104,28 @@ impl Matrices {
         result
     }
 
-    fn check(&self, values: &[f64]) -> Result<(), ModelError> {
+    fn check(&self, values: &[f64]) -> Result<(), MatricesError> {
         let Some(at) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
         let value = values[at];
         Err(match &self.sources[at] {
             Source::Entry { matrix, row, column, text } => {
-                ModelError::EntryNotFinite { matrix, row: *row, column: *column, text: text.clone(), value }
+                MatricesError::NotFinite { matrix, row: *row, column: *column, text: text.clone(), value }
             }
             Source::Factor { matrix, term, text } => {
-                ModelError::FactorNotFinite { matrix, term: *term, text: text.clone(), value }
+                MatricesError::FactorNotFinite { matrix, term: *term, text: text.clone(), value }
             }
         })
+    }
+
+    fn check_slopes(&self, slopes: &[f64]) -> Result<(), MatricesError> {
+        let Some(at) = slopes.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let Derivative { output, variable } = self.program.derivatives()[at];
+        let (input, value) = (self.inputs[variable].clone(), slopes[at]);
+        let (matrix, place, text) = match &self.sources[output] {
+            Source::Entry { matrix, row, column, text } => (matrix, format!("row {row}, column {column}"), text),
+            Source::Factor { matrix, term, text } => (matrix, format!("factor of term {term}"), text),
+        };
+        Err(MatricesError::Slope { matrix, place, text: text.clone(), input, value })
     }
 
     fn state_matrix(&self, values: &[f64]) -> Result<DMatrix<f64>, ModelError> {
@@ -173,6 +186,7 @@ impl Model for Matrices {
         self.with_workspace(|workspace| {
             let evaluated = self.program.differentiate(point, workspace);
             self.check(evaluated.values)?;
+            self.check_slopes(evaluated.derivatives)?;
             self.linearize(&evaluated).map(Some)
         })
     }
