@@ -70,7 +70,7 @@ pub fn try_map_waiting<T: Send, E: Send>(
         let (sender, receiver) = mpsc::channel();
         for _ in 0..jobs.clamp(1, count.max(1)) {
             let (sender, next, has_failed, work) = (sender.clone(), &next, &has_failed, &work);
-            scope.spawn(move || {
+            let started = thread::Builder::new().spawn_scoped(scope, move || {
                 while !has_failed.load(Ordering::SeqCst) {
                     let i = next.fetch_add(1, Ordering::SeqCst);
                     if i >= count {
@@ -84,6 +84,10 @@ pub fn try_map_waiting<T: Send, E: Send>(
                     let _ = sender.send((i, result));
                 }
             });
+            if started.is_err() {
+                // The system has no more threads; those there are do the work.
+                break;
+            }
         }
         drop(sender);
         loop {
@@ -94,7 +98,9 @@ pub fn try_map_waiting<T: Send, E: Send>(
             }
         }
     });
-    results.into_iter().flatten().collect()
+    // Without a single thread it is done here.
+    let none_started = next.load(Ordering::SeqCst) == 0;
+    if none_started { (0..count).map(work).collect() } else { results.into_iter().flatten().collect() }
 }
 
 #[cfg(test)]

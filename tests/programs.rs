@@ -194,12 +194,62 @@ fn runs_that_fail_can_be_skipped_and_are_reported() {
 }
 
 #[test]
-fn a_program_that_fails_everywhere_ends_a_build_that_skips() {
+fn what_ends_a_build_that_skips_is_not_left_in_the_way() {
     let folder = folder(&STUDY.replace("jobs = 8", "jobs = 8\non_failure = \"skip\"\nkeep = \"never\""));
     fs::write(folder.path().join("before.sh"), "exit 7\n").unwrap();
     let message = stderr(&pcc(folder.path(), &["build", "study.toml"]));
     assert!(message.contains("18 of 18 model runs failed, more than half; the first at mu = "), "{message}");
     assert!(message.contains("status 7"), "{message}");
+
+    // The program was at fault. Its failures are recorded, and tried again on request.
+    fs::remove_file(folder.path().join("before.sh")).unwrap();
+    let message = stderr(&pcc(folder.path(), &["build", "study.toml", "--resume"]));
+    assert!(message.contains("18 of 18 model runs failed") && message.contains("--retry-failed"), "{message}");
+    output(folder.path(), &["build", "study.toml", "--resume", "--retry-failed"]);
+    let skipping = fs::read(folder.path().join("program.pcc")).unwrap();
+    assert_eq!(skipping, undisturbed(), "nothing was skipped in the end");
+
+    // An answer stands above a failure that was recorded later, when the build was begun anew by mistake.
+    fs::write(folder.path().join("before.sh"), "exit 7\n").unwrap();
+    assert!(!pcc(folder.path(), &["build", "study.toml"]).status.success());
+    output(folder.path(), &["build", "study.toml", "--resume"]);
+    assert_eq!(fs::read(folder.path().join("program.pcc")).unwrap(), skipping);
+}
+
+#[test]
+fn circumstances_are_no_failures_of_the_model() {
+    let skipping = STUDY.replace("jobs = 8", "jobs = 2\non_failure = \"skip\"");
+    // Programs that were stopped from outside are tried again by the next build, also where failures are skipped.
+    let stopped = folder(&skipping);
+    fs::write(stopped.path().join("before.sh"), "grep -q '\"mu\": *0\\.4' params.json && kill -TERM $$\n").unwrap();
+    output(stopped.path(), &["build", "study.toml"]);
+    fs::remove_file(stopped.path().join("before.sh")).unwrap();
+    output(stopped.path(), &["build", "study.toml", "--resume"]);
+    assert_eq!(fs::read(stopped.path().join("program.pcc")).unwrap(), undisturbed());
+
+    // A program that cannot even be started ends the build, and is no run.
+    let missing = folder(&skipping.replace("[\"sh\"", "[\"no-such-program\""));
+    let message = stderr(&pcc(missing.path(), &["build", "study.toml"]));
+    assert!(message.contains("no-such-program is not found"), "{message}");
+    assert!(!missing.path().join("program.journal").exists());
+}
+
+#[test]
+fn journals_that_somebody_wanted_stay() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("clutch.toml"), support::text("surrogates/clutch-r1.toml")).unwrap();
+    let journal = folder.path().join("clutch-r1.journal");
+    output(folder.path(), &["build", "clutch.toml"]);
+    assert!(!journal.exists(), "nobody asked for it");
+    output(folder.path(), &["build", "clutch.toml", "--journal", "clutch-r1.journal"]);
+    let (recorded, bytes) = (fs::read(&journal).unwrap(), fs::read(folder.path().join("clutch-r1.pcc")).unwrap());
+    output(folder.path(), &["build", "clutch.toml"]);
+    assert!(fs::read(&journal).unwrap().starts_with(&recorded));
+    let said = output(folder.path(), &["build", "clutch.toml", "--resume", "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(said["reused_runs"], said["direct_computations"]);
+    assert_eq!(fs::read(folder.path().join("clutch-r1.pcc")).unwrap(), bytes);
+    assert!(journal.exists());
 }
 
 /// A build in the background, killed when dropped.
@@ -244,14 +294,15 @@ fn answer(rows: &str, choose: impl Fn(usize) -> bool) -> String {
     let mut lines = rows.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
     let at = |name: &str| header.iter().position(|&column| column == name).unwrap();
-    let mut answers = vec!["run,re_1,im_1,re_2,im_2".to_owned()];
+    let mut answers = vec!["run,mu,k,re_1,im_1,re_2,im_2".to_owned()];
     for (number, line) in lines.enumerate().filter(|(number, _)| choose(*number)) {
         let cells: Vec<&str> = line.split(',').collect();
         let _ = number;
         let (mu, k): (f64, f64) = (cells[at("mu")].parse().unwrap(), cells[at("k")].parse().unwrap());
         let parts = [-0.1 * k * mu - 0.1, k.sqrt(), mu - 0.3, 3.0 * k.sqrt() + mu * mu];
         let parts: Vec<String> = parts.iter().map(|part| format!("{part:?}")).collect();
-        answers.push(format!("{},{}", cells[at("run")], parts.join(",")));
+        // The inputs with six digits: the number of the run says which it is.
+        answers.push(format!("{},{mu:.6},{k:.6},{}", cells[at("run")], parts.join(",")));
     }
     answers.join("\n") + "\n"
 }
@@ -306,15 +357,20 @@ fn rows_that_cannot_be_right_are_refused_and_nothing_is_taken() {
     let first_point: Vec<&str> = asked.lines().nth(1).unwrap().split(',').collect();
     let (mu, k) = (first_point[1], first_point[2]);
     let numbers = "-0.1,1.0,-0.2,3.0";
+    let header = "run,mu,k,re_1,im_1,re_2,im_2";
+    let at = |run: usize| asked.lines().nth(run).unwrap();
     let cases = [
-        ("another answer", format!("run,re_1,im_1,re_2,im_2\n5,{numbers}\n1,{numbers}\n")),
-        ("two answers in one file", format!("run,re_1,im_1,re_2,im_2\n5,{numbers}\n5,-0.1,1.0,-0.25,3.0\n")),
-        ("no such run", format!("run,re_1,im_1,re_2,im_2\n99,{numbers}\n0,{numbers}\n")),
-        ("another point", format!("run,mu,k,re_1,im_1,re_2,im_2\n5,{mu},{k},{numbers}\n")),
+        ("another answer", format!("{header}\n{},{numbers}\n{},{numbers}\n", at(5), at(1))),
+        ("two answers in one file", format!("{header}\n{},{numbers}\n{},-0.1,1.0,-0.25,3.0\n", at(5), at(5))),
+        ("no such run", format!("{header}\n99,{mu},{k},{numbers}\n0,{mu},{k},{numbers}\n")),
+        ("another point", format!("{header}\n5,{mu},{k},{numbers}\n")),
+        ("a number alone", format!("run,re_1,im_1,re_2,im_2\n5,{numbers}\n")),
+        ("no modes", format!("{header}\n{},0,0,0,0\n", at(5))),
+        ("fewer modes than elsewhere", format!("{header}\n{},-0.1,1.0,-0.2,-3.0\n", at(5))),
         ("no point of the design", format!("mu,k,re_1,im_1,re_2,im_2\n0.25,1.5,{numbers}\n")),
-        ("not a number", "run,re_1,im_1,re_2,im_2\n5,-0.1,1.0,bad,3.0\n".to_owned()),
-        ("NaN", "run,re_1,im_1,re_2,im_2\n5,-0.1,1.0,NaN,3.0\n".to_owned()),
-        ("a column is missing", "run,re_1,im_1,re_2\n5,-0.1,1.0,-0.2\n".to_owned()),
+        ("not a number", format!("{header}\n{},-0.1,1.0,bad,3.0\n", at(5))),
+        ("NaN", format!("{header}\n{},-0.1,1.0,NaN,3.0\n", at(5))),
+        ("a column is missing", format!("run,mu,k,re_1,im_1,re_2\n{},-0.1,1.0,-0.2\n", at(5))),
         ("neither run nor inputs", format!("re_1,im_1,re_2,im_2\n{numbers}\n")),
         ("empty", String::new()),
     ];
@@ -328,8 +384,16 @@ fn rows_that_cannot_be_right_are_refused_and_nothing_is_taken() {
         insta::assert_snapshot!(said.join("\n"));
     });
 
+    // A wrong answer can be replaced, by a row that is right.
+    let wrong = format!("{header}\n{},-0.1,1.0,-0.2,3.0\n", at(1));
+    fs::write(path.join("wrong.csv"), wrong).unwrap();
+    let replaced = output(path, &["ingest", "study.toml", "wrong.csv", "--replace"]);
+    assert!(replaced.contains("1 new answers"), "{replaced}");
+    output(path, &["ingest", "study.toml", "good.csv", "--replace"]);
+
     // Failures are taken, and asked for again; an answer replaces them.
-    fs::write(path.join("failed.csv"), "run,re_1,im_1,re_2,im_2,error\n5,,,,,diverged\n6,,,,,\n").unwrap();
+    let failed = format!("{header},error\n{},,,,,diverged\n{},,,,,\n", at(5), at(6));
+    fs::write(path.join("failed.csv"), failed).unwrap();
     let ingested = output(path, &["ingest", "study.toml", "failed.csv"]);
     assert!(ingested.contains("1 rows: 0 new answers, 1 failed runs"), "{ingested}");
     let points = |path: &Path| {
@@ -437,6 +501,7 @@ fn studies_of_programs_are_checked_before_anything_runs() {
         with("command = [\"sh\", \"{study}/model.sh\"]\n", ""),
         with("[\"sh\", \"{study}/model.sh\"]", "[]"),
         with("[\"sh\", \"{study}/model.sh\"]", "\"sh model.sh\""),
+        with("[\"sh\", \"{study}/model.sh\"]", "7"),
         with("[\"sh\", \"{study}/model.sh\"]", "[\"sh\", \"model.sh\"]"),
         with("[\"sh\", \"{study}/model.sh\"]", "[\"sh\", \"a\\u0000b\"]"),
         with("jobs = 8", "jobs = 0"),

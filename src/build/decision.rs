@@ -14,7 +14,8 @@
 //! ε² = (rms(Δp)² (1 + 1/√k)² + 1/T²)/n + mean(Δp)² [only if beyond four standard errors] + δ² + f²,
 //!
 //! where k is the effective number of residuals, of which few may all be small by chance, and T the number of points: shares
-//! below 1/T are not seen. The change between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean |Δp| of
+//! below 1/T are not seen. (That part is reported, but no reason for more runs: where few cases are stable, it would take
+//! thousands.) The change between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean |Δp| of
 //! this level and m′ that of the one before: of a difference of two independent errors of these sizes, this is the share of
 //! the smaller one. And f is the share of runs that the model itself calls otherwise than the modes
 //! the surrogate carries: modes left out, or real eigenvalues. More runs do not lower f, so the build does not ask for them.
@@ -78,7 +79,7 @@ pub(super) struct Former {
 pub(super) struct Judgement {
     /// What is stored.
     pub decision: Decision,
-    /// The estimated relative error without the part that more runs do not lower.
+    /// The estimated relative error without the parts that more runs do not lower, or are not worth.
     pub reducible_error: Option<f64>,
     /// For the next level.
     pub former: Option<Former>,
@@ -110,14 +111,15 @@ pub(super) fn judge(
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
     let now = Former { proportion: judge.proportion(), discordance: by_seen.mean_of(f64::abs) };
-    let reducible_error = match former {
+    let (reducible_error, whole_error) = match former {
         Some(former) if blind.len() >= LEAST_BLIND.min(runs.len()) => {
             let by_blind = judge.shares(&blind, runs.len() - blind.len())?;
-            Some(relative_error(&by_blind, judge.effective_runs(), former, now))
+            let error = |unseen| Some(relative_error(&by_blind, judge.effective_runs(), former, now, unseen));
+            (error(0.0), error(1.0 / POINTS as f64))
         }
-        _ => None,
+        _ => (None, None),
     };
-    let error = match reducible_error {
+    let error = match whole_error {
         None if forgotten == 0.0 => None,
         error => Some(error.unwrap_or(0.0).hypot(forgotten / now.proportion)).filter(|error| error.is_finite()),
     };
@@ -184,8 +186,8 @@ pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &
     Decision { max_re_residuals: Vec::new(), proportion_error }
 }
 
-/// ε of the module's head, relative to the proportion.
-fn relative_error(shares: &Shares, effective_runs: f64, former: Former, now: Former) -> f64 {
+/// ε of the module's head, relative to the proportion, where shares below `unseen` are not seen.
+fn relative_error(shares: &Shares, effective_runs: f64, former: Former, now: Former, unseen: f64) -> f64 {
     let square = shares.mean_of(|share| share * share);
     let mean = shares.mean_of(|share| share);
     let count = shares.effective_count();
@@ -194,9 +196,8 @@ fn relative_error(shares: &Shares, effective_runs: f64, former: Former, now: For
     let (square_now, square_former) = (now.discordance.powi(2), former.discordance.powi(2));
     let left = if square_former > 0.0 { square_now / (square_now + square_former) } else { 0.5 };
     let change = (now.proportion - former.proportion) * left;
-    let unseen = (1.0 / POINTS as f64).powi(2);
     let cautious = square * (1.0 + count.sqrt().recip()).powi(2);
-    let error = ((cautious + unseen) / effective_runs + systematic * systematic + change * change).sqrt();
+    let error = ((cautious + unseen * unseen) / effective_runs + systematic * systematic + change * change).sqrt();
     error / now.proportion
 }
 
@@ -343,9 +344,9 @@ mod tests {
         let weights = vec![1.0; 100];
         let now = Former { proportion: 0.5, discordance: 0.01 };
         let scattered = Shares { shares: (0..100).map(|i| if i % 2 == 0 { 0.01 } else { -0.01 }).collect(), weights };
-        assert!((relative_error(&scattered, 100.0, now, now) - 1.1 * 0.01 / 10.0 / 0.5).abs() < UNSEEN);
+        assert!((relative_error(&scattered, 100.0, now, now, UNSEEN) - 1.1 * 0.01 / 10.0 / 0.5).abs() < UNSEEN);
         let common = Shares { shares: vec![0.01; 100], weights: vec![1.0; 100] };
-        assert!(relative_error(&common, 100.0, now, now) > 0.01 / 0.5);
+        assert!(relative_error(&common, 100.0, now, now, UNSEEN) > 0.01 / 0.5);
     }
 
     #[test]
@@ -353,9 +354,9 @@ mod tests {
         let none = Shares { shares: vec![0.0; 10], weights: vec![1.0; 10] };
         let former = Former { proportion: 0.52, discordance: 0.03 };
         let now = Former { proportion: 0.5, discordance: 0.01 };
-        assert!((relative_error(&none, 10.0, former, now) - 0.02 * 0.1 / 0.5).abs() < UNSEEN);
-        let resolved = relative_error(&none, 10.0, now, now);
+        assert!((relative_error(&none, 10.0, former, now, UNSEEN) - 0.02 * 0.1 / 0.5).abs() < UNSEEN);
+        let resolved = relative_error(&none, 10.0, now, now, UNSEEN);
         assert!(resolved > 0.0 && resolved < UNSEEN, "nothing seen is not nothing there");
-        assert_eq!(relative_error(&none, 10.0, former, Former { proportion: 0.0, ..now }), f64::INFINITY);
+        assert_eq!(relative_error(&none, 10.0, former, Former { proportion: 0.0, ..now }, UNSEEN), f64::INFINITY);
     }
 }

@@ -38,7 +38,7 @@ pub(super) enum Command {
     /// Build, evaluate and check a study end to end
     ///
     /// Builds the surrogate, samples it a million times and compares it with ten thousand direct computations at the same
-    /// points. Without STUDY it takes the built-in one: the clutch of the paper with all eight parameters uncertain.
+    /// points (a hundred, if a program makes them). Without STUDY it takes the built-in one: the clutch of the paper with all eight parameters uncertain.
     Run(Run),
 
     /// Build a surrogate from a study
@@ -58,8 +58,8 @@ pub(super) enum Command {
 
     /// Take answers to the points of a design from a table
     ///
-    /// RESULTS.csv has the column run of the table that pcc design wrote, or its inputs, and the eigenvalues as re_1, im_1, re_2,
-    /// im_2 and so on in 1/s; a text in a column error marks a run that failed. Rows may come in any order, in part, and more than
+    /// RESULTS.csv has the inputs of the table that pcc design wrote, and its column run if they have lost digits, and the eigenvalues as
+    /// re_1, im_1, re_2, im_2 and so on in 1/s; a text in a column error marks a run that failed. Rows may come in any order, in part, and more than
     /// once; a row that contradicts an earlier answer is refused, and then none is taken.
     Ingest(Ingest),
 
@@ -300,7 +300,7 @@ pub(super) struct Report {
     #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, default_value = "1000000")]
     pub samples: u64,
 
-    /// Number of model runs with --study [default: 10000]
+    /// Number of model runs with --study [default: 10000; of a program 100]
     #[arg(long, value_name = "M", value_parser = run_count, requires = "study")]
     pub runs: Option<u64>,
 

@@ -5,6 +5,7 @@ use super::run_arguments::Recording;
 use crate::design::Ledger;
 use crate::journal::{Contents, Journal};
 use crate::study::{ModelSettings, Study};
+use anyhow::bail;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -18,7 +19,7 @@ pub(super) struct Books {
     /// The journal, if there is one.
     pub journal: Option<PathBuf>,
     /// Whether the journal is of use only until the command ends: pcc runs the model itself, nobody asked for the journal, and
-    /// there is nothing else in it.
+    /// this command began it.
     is_disposable: bool,
 }
 
@@ -31,27 +32,35 @@ impl Books {
     /// Ends work that failed or was interrupted. The journal of an interrupted command is kept if it took long to fill.
     pub fn give_up(self, context: &Context, is_interruption: bool) {
         let took_long = is_interruption && self.ledger.recorded_time() >= WORTH_KEEPING;
-        match &self.journal {
-            Some(journal) if (took_long || !self.is_disposable) && self.ledger.recorded() > 0 => {
-                let runs = plural(self.ledger.recorded() as usize, "model run");
-                context.say(&format!("{}: {runs} recorded; --resume goes on from there", journal.display()));
-            }
-            _ => self.close(),
+        match took_long || !self.is_disposable {
+            true => self.say_recorded(context),
+            false => self.close(),
+        }
+    }
+
+    /// Says what an unfinished command has recorded.
+    pub fn say_recorded(&self, context: &Context) {
+        if let Some(journal) = self.journal.as_ref().filter(|_| self.ledger.recorded() > 0) {
+            let runs = plural(self.ledger.recorded() as usize, "model run");
+            context.say(&format!("{}: {runs} recorded; --resume goes on from there", journal.display()));
         }
     }
 
     /// Keeps a journal that somebody may want, and removes one that nobody does.
     pub fn close(self) {
-        if let Some(path) = self.journal.as_ref().filter(|_| self.is_disposable) {
-            // Removed before it is unlocked; if it stays, it does no harm.
-            let _ = std::fs::remove_file(path);
+        if self.is_disposable {
+            self.ledger.discard_journal();
         }
     }
 }
 
-/// Where a build records its runs unless it is told otherwise: beside the surrogate, named after the study.
+/// Where a build records its runs unless it is told otherwise: those of programs where other commands look for them; others, which are of
+/// use only while the build lasts, beside the surrogate.
 pub(super) fn journal_of_build(study: &Study, surrogate: &Path) -> PathBuf {
-    surrogate.with_file_name(journal_name(study))
+    match study.model.is_external() {
+        true => journal_here(study),
+        false => surrogate.with_file_name(journal_name(study)),
+    }
 }
 
 /// Where other commands look for a journal: in the current folder.
@@ -78,7 +87,7 @@ pub(super) fn open(
         return Ok(Books { ledger: Ledger::blank(study), journal: None, is_disposable: false });
     };
     let is_new = !path.exists();
-    let is_unasked = options.journal.is_none() && !options.resume && !study.model.is_external();
+    let is_unasked = options.journal.is_none() && !wants_journal && !study.model.is_external();
     let (journal, contents) = match Journal::open(&path) {
         // Builds of pcc's own models may run beside each other, as long as nobody asked for a journal.
         Err(_) if is_unasked => {
@@ -87,8 +96,16 @@ pub(super) fn open(
         opened => opened?,
     };
     remark(context, &path, &contents);
+    let is_disposable = is_unasked && journal.is_blank();
     let mut ledger = Ledger::recording(study, journal);
-    let own = contents.records.iter().filter(|record| record.model == study.model_hash()).count();
+    if is_unasked {
+        ledger = ledger.optional();
+    }
+    if options.retry_failed {
+        ledger = ledger.retrying_failures();
+    }
+    let model = study.model_hash();
+    let own = contents.records.iter().filter(|record| record.model == model).count();
     let (shown, runs) = (path.display(), plural(own, "model run"));
     if options.resume || is_table {
         ledger = ledger.knowing(&contents);
@@ -102,7 +119,10 @@ pub(super) fn open(
                 plural(others, "run")
             )),
             (0, _) => {}
-            _ => context.say(&format!("{shown}: {runs} recorded")),
+            _ => {
+                context.say(&format!("{shown}: {runs} recorded"));
+                changed_programs(context, study, &path);
+            }
         }
     } else if own > 0 && study.model.is_external() {
         context.say(&format!("{shown}: {runs} recorded earlier are not used; stop and add --resume to use them"));
@@ -110,8 +130,22 @@ pub(super) fn open(
     if is_table {
         ledger = ledger.asking();
     }
-    let is_disposable = options.journal.is_none() && !study.model.is_external() && contents.records.len() == own;
     Ok(Books { ledger, journal: Some(path), is_disposable })
+}
+
+/// Says which files of the program are newer than its last recorded run: what they answer now may be something else.
+fn changed_programs(context: &Context, study: &Study, journal: &Path) {
+    let ModelSettings::Command(command) = &study.model else { return };
+    let modified = |path: &Path| path.metadata().and_then(|metadata| metadata.modified()).ok();
+    let Some(last_run) = modified(journal) else { return };
+    for name in command.arguments.iter().filter_map(|argument| argument.strip_prefix("{study}/")) {
+        if modified(&command.study_folder.join(name)).is_some_and(|changed| changed > last_run) {
+            context.say(&format!(
+                "{name} has changed since the last recorded run; if it answers otherwise now, change model.version in the study, so that \
+                 earlier runs no longer count"
+            ));
+        }
+    }
 }
 
 /// Says what is wrong with a journal that can be used all the same.
@@ -135,6 +169,11 @@ pub(super) fn remark(context: &Context, path: &Path, contents: &Contents) {
 /// Opens the books of a command that runs the model at random points: those of programs are recorded, others only if the user
 /// names a journal.
 pub(super) fn open_here(context: &Context, study: &Study, options: &Recording) -> anyhow::Result<Books> {
+    if let ModelSettings::Table(_) = study.model {
+        bail!(
+            "pcc cannot run models of kind \"table\", so it cannot sample them, compare with them or certify by them"
+        );
+    }
     let is_program = matches!(study.model, ModelSettings::Command(_));
     open(context, study, options, is_program.then(|| journal_here(study)))
 }

@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Where model runs are recorded.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(super) struct Recording {
     /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside the surrogate;
     /// others only while a build lasts]
@@ -14,6 +14,10 @@ pub(super) struct Recording {
     /// Use the runs of this model that the journal has instead of running them again
     #[arg(long)]
     pub resume: bool,
+
+    /// Try recorded failures again that the study would skip
+    #[arg(long, requires = "resume")]
+    pub retry_failed: bool,
 
     /// Record nothing
     #[arg(long, conflicts_with_all = ["journal", "resume"])]
@@ -42,6 +46,10 @@ pub(super) struct Ingest {
     /// Table of answers
     #[arg(value_name = "RESULTS.csv")]
     pub results: PathBuf,
+
+    /// Take answers that contradict earlier ones in their place
+    #[arg(long)]
+    pub replace: bool,
 
     /// Journal of the answers [default: <name of the study>.journal in the current folder]
     #[arg(long, value_name = "FILE")]

@@ -40,10 +40,14 @@ pub struct Failure {
 #[derive(Debug)]
 pub struct Ledger {
     model: [u8; HASH_BYTES],
-    /// By the bits of the inputs: the last that was recorded of each point.
+    /// By the bits of the inputs: the best that was recorded of each point, and of equals the last.
     known: HashMap<Vec<u64>, Outcome>,
     unknown: Unknown,
     journal: Option<Journal>,
+    /// Whether runs go on if they cannot be recorded, because nobody asked for a journal.
+    is_optional: bool,
+    /// Whether recorded failures are tried again even if they are to be skipped.
+    retries_failures: bool,
     pages: Mutex<Pages>,
 }
 
@@ -70,7 +74,15 @@ impl Ledger {
             pending: Vec::new(),
             last_sync: Instant::now(),
         };
-        Self { model, known: HashMap::new(), unknown: Unknown::Run, journal, pages: Mutex::new(pages) }
+        Self {
+            model,
+            known: HashMap::new(),
+            unknown: Unknown::Run,
+            journal,
+            is_optional: false,
+            retries_failures: false,
+            pages: Mutex::new(pages),
+        }
     }
 
     /// Nothing is known and nothing recorded.
@@ -83,13 +95,43 @@ impl Ledger {
         Self::new(study.model_hash(), Some(journal))
     }
 
-    /// What `contents` has of this model is known, and need not be run again.
+    /// What `contents` has of this model is known, and need not be run again. Answers with derivatives stand above those without, and
+    /// these above failures.
     #[must_use]
     pub fn knowing(mut self, contents: &Contents) -> Self {
         for record in contents.records.iter().filter(|record| record.model == self.model) {
-            self.known.insert(bits(&record.point), record.outcome.clone());
+            let known = self.known.entry(bits(&record.point)).or_insert_with(|| record.outcome.clone());
+            if rank(&record.outcome) >= rank(known) {
+                *known = record.outcome.clone();
+            }
         }
         self
+    }
+
+    /// Runs go on if they cannot be recorded.
+    #[must_use]
+    pub fn optional(mut self) -> Self {
+        self.is_optional = true;
+        self
+    }
+
+    /// Recorded failures are tried again, even if the study skips them.
+    #[must_use]
+    pub fn retrying_failures(mut self) -> Self {
+        self.retries_failures = true;
+        self
+    }
+
+    /// Whether a recorded failure may be left out instead of being tried again.
+    pub(super) fn may_skip(&self, by_circumstances: bool) -> bool {
+        !(by_circumstances || self.retries_failures)
+    }
+
+    /// The journal is of no use to anybody: it is removed when the books are closed.
+    pub fn discard_journal(&self) {
+        if let Some(journal) = &self.journal {
+            journal.discard();
+        }
     }
 
     /// The model is not run: a build that needs more than what is known ends with
@@ -115,7 +157,7 @@ impl Ledger {
         self.unknown == Unknown::Run
     }
 
-    /// Every point asked for so far, in the order of the design.
+    /// Every point asked for so far, in the order of the design, if the model is not run.
     pub fn asked(&self) -> Vec<Asked> {
         self.pages().asked.clone()
     }
@@ -146,7 +188,9 @@ impl Ledger {
         for (i, point) in points.iter().enumerate() {
             let is_known = is_known(i);
             pages.reused += u64::from(is_known);
-            pages.asked.push(Asked { point: point.clone(), is_known });
+            if !self.may_run() {
+                pages.asked.push(Asked { point: point.clone(), is_known });
+            }
         }
     }
 
@@ -159,7 +203,7 @@ impl Ledger {
     pub(super) fn record(
         &self,
         point: &[f64],
-        outcome: &Outcome,
+        outcome: impl FnOnce() -> Outcome,
         duration: Duration,
         at_once: bool,
     ) -> Result<(), JournalError> {
@@ -167,7 +211,7 @@ impl Ledger {
             return Ok(());
         }
         let (model, seconds) = (self.model, duration.as_secs_f64());
-        let record = Record { model, point: point.to_vec(), outcome: outcome.clone(), seconds };
+        let record = Record { model, point: point.to_vec(), outcome: outcome(), seconds };
         let mut pages = self.pages();
         pages.pending.push(record);
         pages.recorded_time += duration;
@@ -181,8 +225,11 @@ impl Ledger {
 
     fn write(&self, pages: &mut Pages) -> Result<(), JournalError> {
         if let Some(journal) = self.journal.as_ref().filter(|_| !pages.pending.is_empty()) {
-            journal.append(&pages.pending.iter().collect::<Vec<_>>())?;
-            pages.recorded += pages.pending.len() as u64;
+            match journal.append(&pages.pending.iter().collect::<Vec<_>>()) {
+                Ok(()) => pages.recorded += pages.pending.len() as u64,
+                Err(_) if self.is_optional => {}
+                Err(error) => return Err(error),
+            }
         }
         pages.pending.clear();
         pages.last_sync = Instant::now();
@@ -191,6 +238,14 @@ impl Ledger {
 
     fn pages(&self) -> MutexGuard<'_, Pages> {
         self.pages.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What says more of a point stands higher.
+fn rank(outcome: &Outcome) -> u8 {
+    match outcome {
+        Outcome::Failed { .. } => 0,
+        Outcome::Answered(computation) => 1 + u8::from(computation.reduction.is_some()),
     }
 }
 

@@ -3,14 +3,14 @@
 use super::ledger::Asked;
 use crate::journal::{HASH_BYTES, Outcome, Record};
 use crate::model::program::results_table::ResultRow;
-use crate::spectrum::Computation;
+use crate::spectrum::{Computation, Spectrum, SpectrumError};
 use crate::study::Study;
 use nalgebra::Complex;
 use std::collections::HashMap;
 use thiserror::Error;
 
 /// Inputs of a numbered run may differ from the design's by this share of their interval: tables are written with fewer digits.
-const INPUT_TOLERANCE: f64 = 1e-6;
+const INPUT_TOLERANCE: f64 = 1e-4;
 
 /// Two answers to the same run may differ by this share of the largest eigenvalue: solvers on other machines round otherwise.
 const ANSWER_TOLERANCE: f64 = 1e-9;
@@ -42,8 +42,29 @@ pub enum RowProblem {
         /// The point in the row.
         found: String,
     },
+    /// The row says where it belongs by a number alone.
+    #[error(
+        "line {line}: has the number of a run, but not its inputs; keep the columns of the inputs, so that an answer cannot get to the \
+         point of another study or seed"
+    )]
+    NoInputs {
+        /// Line of the table.
+        line: u64,
+    },
+    /// The model's answer has no modes.
+    #[error("line {line}: run {run}: {cause}")]
+    Spectrum {
+        /// Line of the table.
+        line: u64,
+        /// Number of the run.
+        run: u64,
+        /// Why.
+        cause: SpectrumError,
+    },
     /// The inputs are no point of the design.
-    #[error("line {line}: {found} is no point of the design; keep the column run, or all digits of the inputs")]
+    #[error(
+        "line {line}: {found} is no point that the design has asked for so far; keep all digits of the inputs, or the column run beside them"
+    )]
     NoSuchPoint {
         /// Line of the table.
         line: u64,
@@ -52,7 +73,8 @@ pub enum RowProblem {
     },
     /// Another answer is known.
     #[error(
-        "line {line}: run {run} was answered otherwise before: eigenvalues differ by {difference:e} 1/s; remove one of the two"
+        "line {line}: run {run} was answered otherwise before: eigenvalues differ by {difference:.1e} 1/s; remove the wrong \
+         one, or take this one in its place with --replace"
     )]
     Contradiction {
         /// Line of the table.
@@ -76,8 +98,9 @@ pub struct Harvest {
 /// Finds the run of each row among those `asked` for, in the order of the design, and what is new; `known` are the outcomes of these
 /// runs as far as there are any.
 ///
-/// A row belongs to the run with its number, or else to that with the bits of its inputs. Answers to a run that has failed
-/// are new; failures of a run that was answered are not.
+/// A row belongs to the run with its number, whose inputs it must have to four digits of its interval, or else to that with the bits of its inputs.
+/// Answers to a run that has failed are new; failures of a run that was answered are not. With `replaces`, an answer that
+/// contradicts an earlier one takes its place.
 ///
 /// # Errors
 ///
@@ -87,6 +110,7 @@ pub fn harvest(
     asked: &[Asked],
     known: impl Fn(&[f64]) -> Option<Outcome>,
     rows: &[ResultRow],
+    replaces: bool,
 ) -> Result<Harvest, Vec<RowProblem>> {
     let by_bits: HashMap<Vec<u64>, usize> = (0..asked.len()).map(|i| (bits(&asked[i].point), i)).collect();
     let mut outcomes: HashMap<usize, Outcome> = HashMap::new();
@@ -101,18 +125,29 @@ pub fn harvest(
             }
         };
         let point = &asked[i].point;
+        let (line, run) = (row.line, i as u64 + 1);
         let outcome = match &row.answer {
-            Ok(eigenvalues) => Outcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reduction: None }),
-            Err(cause) => Outcome::Failed { attempts: 1, cause: cause.clone() },
+            Ok(eigenvalues) => {
+                if let Err(cause) = usable(study, eigenvalues) {
+                    problems.push(RowProblem::Spectrum { line, run, cause });
+                    continue;
+                }
+                Outcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reduction: None })
+            }
+            Err(cause) => Outcome::Failed { attempts: 1, cause: cause.clone(), by_circumstances: false },
         };
         let before = outcomes.get(&i).cloned().or_else(|| known(point));
         match (&before, &outcome) {
             (Some(Outcome::Answered(before)), Outcome::Answered(now)) => {
                 let (difference, scale) = difference(&before.eigenvalues, &now.eigenvalues);
-                if difference > ANSWER_TOLERANCE * scale {
-                    problems.push(RowProblem::Contradiction { line: row.line, run: i as u64 + 1, difference });
+                match (difference > ANSWER_TOLERANCE * scale, replaces) {
+                    (false, _) => harvest.repeated += 1,
+                    (true, false) => problems.push(RowProblem::Contradiction { line, run, difference }),
+                    (true, true) => {
+                        outcomes.insert(i, outcome.clone());
+                        harvest.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+                    }
                 }
-                harvest.repeated += 1;
             }
             (Some(Outcome::Answered(_)), Outcome::Failed { .. }) => harvest.repeated += 1,
             (Some(before), now) if before == now => harvest.repeated += 1,
@@ -140,12 +175,20 @@ fn find(
     };
     let i = usize::try_from(run).ok().and_then(|run| run.checked_sub(1)).filter(|&i| i < asked.len());
     let i = i.ok_or(RowProblem::NoSuchRun { line, run, asked: asked.len() })?;
-    match &row.inputs {
-        Some(inputs) if !is_close(study, inputs, &asked[i].point) => {
-            Err(RowProblem::OtherPoint { line, run, expected: describe(&asked[i].point), found: describe(inputs) })
+    let inputs = row.inputs.as_ref().ok_or(RowProblem::NoInputs { line })?;
+    match is_close(study, inputs, &asked[i].point) {
+        true => Ok(i),
+        false => {
+            let (expected, found) = (describe(&asked[i].point), describe(inputs));
+            Err(RowProblem::OtherPoint { line, run, expected, found })
         }
-        _ => Ok(i),
     }
+}
+
+/// Whether the study's modes are among these eigenvalues.
+fn usable(study: &Study, eigenvalues: &[Complex<f64>]) -> Result<(), SpectrumError> {
+    let spectrum = Spectrum::new(eigenvalues)?;
+    study.spectrum.modes.ranks(spectrum.count()).map(drop)
 }
 
 fn is_close(study: &Study, found: &[f64], expected: &[f64]) -> bool {

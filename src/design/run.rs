@@ -90,6 +90,9 @@ pub struct Runner<'a> {
 /// What is kept of a run until all are there.
 type Answer = (Spectrum, Option<ReducedSystem>);
 
+/// How a run ended: with an answer, or with a failure that is left out, and its cause.
+type Ending = Result<Answer, String>;
+
 impl<'a> Runner<'a> {
     /// Sets up the model.
     ///
@@ -149,7 +152,14 @@ impl<'a> Runner<'a> {
         skips: bool,
         observer: &dyn Observer,
     ) -> Result<Vec<Option<Run>>, RunError> {
-        let answers = self.answers(points, skips, observer)?;
+        let known = points.iter().map(|point| self.known(point, skips)).collect::<Result<Vec<_>, _>>()?;
+        // Answers that others gave are wrong before the last one is there.
+        for (point, known) in points.iter().zip(&known) {
+            if let Some(Ok((spectrum, _))) = known {
+                self.check_mode_count(point, spectrum.count())?;
+            }
+        }
+        let answers = self.complete(points, known, skips, observer)?;
         // Every point first: where the number of modes changes, a missing mode is the lesser news.
         for (point, answer) in points.iter().zip(&answers) {
             if let Some((spectrum, _)) = answer {
@@ -163,13 +173,13 @@ impl<'a> Runner<'a> {
     }
 
     /// The answers that are known, and those of the model at the other points.
-    fn answers(
+    fn complete(
         &self,
         points: &[Vec<f64>],
+        known: Vec<Option<Ending>>,
         skips: bool,
         observer: &dyn Observer,
     ) -> Result<Vec<Option<Answer>>, RunError> {
-        let known = points.iter().map(|point| self.known(point, skips)).collect::<Result<Vec<_>, _>>()?;
         let missing: Vec<usize> = (0..points.len()).filter(|&i| known[i].is_none()).collect();
         if let Some(ledger) = self.ledger {
             ledger.note(points, |i| known[i].is_some());
@@ -185,19 +195,25 @@ impl<'a> Runner<'a> {
             ledger.sync()?;
         }
         let mut found = found?.into_iter();
-        Ok(known.into_iter().map(|known| known.unwrap_or_else(|| found.next().flatten())).collect())
+        let endings = known.into_iter().zip(points).filter_map(|(known, point)| {
+            let ending = known.or_else(|| found.next())?;
+            if let (Some(ledger), Err(cause)) = (self.ledger, &ending) {
+                ledger.note_failure(point, cause.clone());
+            }
+            Some(ending.ok())
+        });
+        Ok(endings.collect())
     }
 
     /// What the ledger knows of a point, if that is enough: an answer, or a failure that may be left out.
-    fn known(&self, point: &[f64], skips: bool) -> Result<Option<Option<Answer>>, RunError> {
+    fn known(&self, point: &[f64], skips: bool) -> Result<Option<Ending>, RunError> {
         let Some(ledger) = self.ledger else { return Ok(None) };
         match ledger.find(point) {
             Some(Outcome::Answered(computation)) if self.suffices(computation) => {
-                self.answer(point, computation.clone()).map(|answer| Some(Some(answer)))
+                self.answer(point, computation.clone()).map(|answer| Some(Ok(answer)))
             }
-            Some(Outcome::Failed { cause, .. }) if skips => {
-                ledger.note_failure(point, cause.clone());
-                Ok(Some(None))
+            Some(Outcome::Failed { cause, by_circumstances, .. }) if skips && ledger.may_skip(*by_circumstances) => {
+                Ok(Some(Err(cause.clone())))
             }
             _ => Ok(None),
         }
@@ -214,12 +230,7 @@ impl<'a> Runner<'a> {
         !self.with_derivatives || modes().as_ref().is_none_or(has_them)
     }
 
-    fn run_model(
-        &self,
-        points: &[&Vec<f64>],
-        skips: bool,
-        observer: &dyn Observer,
-    ) -> Result<Vec<Option<Answer>>, RunError> {
+    fn run_model(&self, points: &[&Vec<f64>], skips: bool, observer: &dyn Observer) -> Result<Vec<Ending>, RunError> {
         let watch = || {
             if observer.interrupted() {
                 self.model.interrupt();
@@ -247,7 +258,7 @@ impl<'a> Runner<'a> {
         points: &[&Vec<f64>],
         skips: bool,
         observer: &dyn Observer,
-    ) -> Result<Vec<Option<Answer>>, RunError> {
+    ) -> Result<Vec<Ending>, RunError> {
         observer.check()?;
         let start = Instant::now();
         let owned: Vec<Vec<f64>> = points.iter().map(|&point| point.clone()).collect();
@@ -274,25 +285,27 @@ impl<'a> Runner<'a> {
         at_once: bool,
         skips: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<Answer>, RunError> {
-        let outcome = match &result {
-            // A run that was stopped did not fail.
-            Err(_) if observer.interrupted() => return Err(Interrupted.into()),
+    ) -> Result<Ending, RunError> {
+        let outcome = || match &result {
             Ok(computation) => Outcome::Answered(computation.clone()),
-            Err(cause) => Outcome::Failed { attempts: cause.attempts(), cause: cause.to_string() },
+            Err(cause) => Outcome::Failed {
+                attempts: cause.attempts(),
+                cause: cause.to_string(),
+                by_circumstances: cause.is_by_circumstances(),
+            },
         };
-        if let Some(ledger) = self.ledger {
-            ledger.record(point, &outcome, duration, at_once)?;
+        // A run that was stopped, or could not even be started, did not fail.
+        let has_run = result.as_ref().err().is_none_or(|cause| cause.is_of_run());
+        if result.is_err() && observer.interrupted() {
+            return Err(Interrupted.into());
+        }
+        if let Some(ledger) = self.ledger.filter(|_| has_run) {
+            ledger.record(point, outcome, duration, at_once)?;
         }
         observer.advance(1);
         match result {
-            Ok(computation) => self.answer(point, computation).map(Some),
-            Err(cause) if skips => {
-                if let Some(ledger) = self.ledger {
-                    ledger.note_failure(point, cause.to_string());
-                }
-                Ok(None)
-            }
+            Ok(computation) => self.answer(point, computation).map(Ok),
+            Err(cause) if skips && has_run => Ok(Err(cause.to_string())),
             Err(cause) => Err(RunError::Model { point: self.study.inputs.describe(point), cause }),
         }
     }

@@ -96,8 +96,8 @@ pub struct Journal {
 struct Tail {
     file: File,
     end: u64,
-    /// Whether it was begun by this process and has no records yet.
-    is_blank: bool,
+    /// Whether nobody will want it: it was begun by this process and has no records yet, or was discarded.
+    is_worthless: bool,
 }
 
 impl Journal {
@@ -113,7 +113,7 @@ impl Journal {
     /// use pcc::journal::{Journal, Outcome, Record};
     /// # let folder = tempfile::tempdir()?;
     /// # let path = folder.path().join("clutch.journal");
-    /// let failed = Outcome::Failed { attempts: 1, cause: "exit status 1".to_owned() };
+    /// let failed = Outcome::Failed { attempts: 1, cause: "exit status 1".to_owned(), by_circumstances: false };
     /// let record = Record { model: [0; 32], point: vec![0.25], outcome: failed, seconds: 3.5 };
     /// let (journal, before) = Journal::open(&path)?;
     /// assert!(before.records.is_empty());
@@ -128,25 +128,17 @@ impl Journal {
         if path.exists() && !path.is_file() {
             return Err(JournalError::NotAJournal { path: path.display().to_string() });
         }
-        let is_new = !path.exists();
-        let mut file =
-            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        file.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => JournalError::Locked { path: path.display().to_string() },
-            TryLockError::Error(cause) => failed(cause),
-        })?;
+        let mut file = locked(path)?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(failed)?;
         let (contents, end) = contents(path, &bytes)?;
-        if bytes.len() < HEADER_BYTES {
-            begin(&mut file).map_err(failed)?;
+        let is_blank = bytes.len() < HEADER_BYTES;
+        if is_blank {
+            begin(&mut file).and_then(|()| sync_folder(path)).map_err(failed)?;
         } else if end < bytes.len() as u64 {
             file.set_len(end).and_then(|()| file.sync_all()).map_err(failed)?;
         }
-        if is_new {
-            sync_folder(path).map_err(failed)?;
-        }
-        let file = Mutex::new(Tail { file, end, is_blank: is_new });
+        let file = Mutex::new(Tail { file, end, is_worthless: is_blank });
         Ok((Self { path: path.to_owned(), file }, contents))
     }
 
@@ -157,6 +149,10 @@ impl Journal {
     ///
     /// [`JournalError`].
     pub fn read(path: &Path) -> Result<Contents, JournalError> {
+        // Opening a pipe would wait, and a device has no end.
+        if path.exists() && !path.is_file() {
+            return Err(JournalError::NotAJournal { path: path.display().to_string() });
+        }
         let bytes = std::fs::read(path).map_err(|cause| io_error(path, &cause))?;
         contents(path, &bytes).map(|(contents, _)| contents)
     }
@@ -182,6 +178,16 @@ impl Journal {
         written.map_err(|cause| io_error(&self.path, &cause))
     }
 
+    /// Whether it was begun by this process and has no records yet.
+    pub fn is_blank(&self) -> bool {
+        self.tail().end == HEADER_BYTES as u64
+    }
+
+    /// Removes the file once the journal is closed.
+    pub fn discard(&self) {
+        self.tail().is_worthless = true;
+    }
+
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
@@ -192,10 +198,11 @@ impl Journal {
     }
 }
 
-/// A journal that was begun for nothing is not left behind.
+/// A journal that was begun for nothing is not left behind. It is removed while it is locked.
 impl Drop for Journal {
     fn drop(&mut self) {
-        if self.tail().is_blank {
+        let tail = self.tail();
+        if tail.is_worthless && is_at(&tail.file, &self.path).unwrap_or(false) {
             // If it stays, it does no harm.
             let _ = std::fs::remove_file(&self.path);
         }
@@ -208,9 +215,42 @@ impl Tail {
         self.file.write_all(bytes)?;
         self.file.sync_data()?;
         self.end += bytes.len() as u64;
-        self.is_blank &= bytes.is_empty();
+        self.is_worthless &= bytes.is_empty();
         Ok(())
     }
+}
+
+/// Opens the file and locks it. Another process may remove its journal between the two: then the file that is locked is no longer
+/// the one at the path, and what is written there would be lost.
+fn locked(path: &Path) -> Result<File, JournalError> {
+    let failed = |cause: io::Error| io_error(path, &cause);
+    loop {
+        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        file.try_lock().map_err(|error| match error {
+            TryLockError::WouldBlock => JournalError::Locked { path: path.display().to_string() },
+            TryLockError::Error(cause) => failed(cause),
+        })?;
+        if is_at(&file, path).map_err(failed)? {
+            return Ok(file);
+        }
+    }
+}
+
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let own = file.metadata()?;
+    match std::fs::metadata(path) {
+        Ok(found) => Ok((own.dev(), own.ino()) == (found.dev(), found.ino())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Elsewhere an open file cannot be removed.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> io::Result<bool> {
+    Ok(true)
 }
 
 fn io_error(path: &Path, cause: &io::Error) -> JournalError {
@@ -236,7 +276,11 @@ fn sync_folder(path: &Path) -> io::Result<()> {
     #[cfg(unix)]
     {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        File::open(folder)?.sync_all()?;
+        match File::open(folder)?.sync_all() {
+            // Some network file systems cannot.
+            Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {}
+            result => result?,
+        }
     }
     #[cfg(not(unix))]
     let _ = path;
@@ -283,7 +327,7 @@ mod tests {
     use super::*;
 
     fn record(x: f64) -> Record {
-        let outcome = Outcome::Failed { attempts: 1, cause: "none".to_owned() };
+        let outcome = Outcome::Failed { attempts: 1, cause: "none".to_owned(), by_circumstances: false };
         Record { model: [1; HASH_BYTES], point: vec![x], outcome, seconds: 1.0 }
     }
 

@@ -8,7 +8,7 @@
 //! | 32 | hash of the model, SHA-256 |
 //! | 8 | seconds that the run took |
 //! | 4, 8 r | number r of inputs, their values x in physical units |
-//! | 1 | status: 0 answered, 1 failed |
+//! | 1 | status: 0 answered, 1 failed, 2 failed by circumstances |
 //! | … | answered: number of eigenvalues (u32), Re λ and Im λ of each, then the derivatives: 0 none, 1 modes could not be separated, 2 reduced |
 //! | … | with 1 and 2: number m of modes (u32), their ranks (u32 each) |
 //! | … | with 2: T and D_1 … D_r, m × m complex numbers each, by columns |
@@ -37,6 +37,8 @@ pub enum Outcome {
         attempts: u32,
         /// Why, with what was captured of its output.
         cause: String,
+        /// Whether something else than the model ended it, a signal say: another attempt may go well.
+        by_circumstances: bool,
     },
 }
 
@@ -66,8 +68,8 @@ impl Record {
                 body.push(0);
                 put_computation(&mut body, computation);
             }
-            Outcome::Failed { attempts, cause } => {
-                body.push(1);
+            Outcome::Failed { attempts, cause, by_circumstances } => {
+                body.push(if *by_circumstances { 2 } else { 1 });
                 body.extend_from_slice(&attempts.to_le_bytes());
                 put_count(&mut body, cause.len());
                 body.extend_from_slice(cause.as_bytes());
@@ -186,9 +188,10 @@ impl<'a> Reader<'a> {
         let point = self.numbers(inputs)?;
         let outcome = match self.byte()? {
             0 => Outcome::Answered(self.computation(inputs)?),
-            1 => {
+            status @ (1 | 2) => {
                 let (attempts, length) = (self.count()? as u32, self.count()?);
-                Outcome::Failed { attempts, cause: String::from_utf8(self.take(length)?.to_vec()).ok()? }
+                let cause = String::from_utf8(self.take(length)?.to_vec()).ok()?;
+                Outcome::Failed { attempts, cause, by_circumstances: status == 2 }
             }
             _ => return None,
         };
@@ -245,11 +248,15 @@ mod tests {
             outcome: Outcome::Answered(Computation { eigenvalues: vec![Complex::new(1.0, 2.0)], reduction }),
             ..full.clone()
         };
-        let failed = Outcome::Failed { attempts: 3, cause: "μ was too large\nsecond line".to_owned() };
+        let failed = |by_circumstances| {
+            let cause = "μ was too large\nsecond line".to_owned();
+            Record { outcome: Outcome::Failed { attempts: 3, cause, by_circumstances }, ..full.clone() }
+        };
         vec![
             with(None),
             with(Some(Reduction::Inseparable(vec![3, 4]))),
-            Record { outcome: failed, ..full.clone() },
+            failed(false),
+            failed(true),
             Record { point: Vec::new(), ..record(&[]) },
             full,
         ]
@@ -268,7 +275,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_changed_bit_is_seen(kind in 0..5usize, at in any::<prop::sample::Index>(), bit in 0..8u8) {
+        fn a_changed_bit_is_seen(kind in 0..6usize, at in any::<prop::sample::Index>(), bit in 0..8u8) {
             let mut frame = kinds()[kind].frame().unwrap();
             let at = at.index(frame.len());
             frame[at] ^= 1 << bit;
@@ -277,7 +284,7 @@ mod tests {
 
         #[test]
         fn changed_fields_with_a_right_checksum_never_panic(
-            kind in 0..5usize, at in any::<prop::sample::Index>(), value: u32,
+            kind in 0..6usize, at in any::<prop::sample::Index>(), value: u32,
         ) {
             let frame = kinds()[kind].frame().unwrap();
             let mut body = frame[FRAME_HEAD..].to_vec();

@@ -15,7 +15,7 @@ pub use unrun::Unrun;
 use crate::numerics::eigenvalues::EigenvalueError;
 use matrices::MatricesError;
 use nalgebra::Complex;
-use program::ProgramError;
+use program::{ProgramError, ProgramFailure};
 use thiserror::Error;
 
 /// Why a model could not be set up or run.
@@ -80,6 +80,16 @@ impl From<ProgramError> for ModelError {
 }
 
 impl ModelError {
+    /// Whether the model was run and failed, and not what it takes to run it.
+    pub fn is_of_run(&self) -> bool {
+        !matches!(self, Self::Program(error) if error.failure.is_of_machine())
+    }
+
+    /// Whether something else than the model ended the run: another attempt may go well.
+    pub fn is_by_circumstances(&self) -> bool {
+        matches!(self, Self::Program(error) if matches!(error.failure, ProgramFailure::Signal { .. }))
+    }
+
     /// How often a run was tried before this was its end.
     pub fn attempts(&self) -> u32 {
         match self {

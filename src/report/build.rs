@@ -206,12 +206,13 @@ impl FitReport {
         warnings.extend(Self::distrusted(surrogate));
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
-                "the proportion may be off by {} % of itself; if spectrum.modes leaves out modes that can become unstable, \
-                 list them; else raise design.maximum or choose another fit.method, and check with pcc compare or certify",
+                "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; if spectrum.modes \
+                 leaves out modes that can become unstable, list them; else raise design.maximum or choose another fit.method, and check \
+                 with pcc compare or certify",
                 significant(100.0 * error, 2)
             )),
             (None, Some(_)) => warnings.push(
-                "the error of the proportion could not be estimated: it takes two design levels, and stable points".to_owned(),
+                "the error of the proportion could not be estimated: that takes two design levels, and cases that are stable".to_owned(),
             ),
             _ => {}
         }

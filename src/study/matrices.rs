@@ -5,7 +5,7 @@ use super::raw;
 use super::validate::Lines;
 use crate::model::matrices::{Entry, Form, Layout, MatricesError, Matrix, Role, Term, read_matrix_market};
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 use toml::{Spanned, Table, Value};
 
@@ -55,17 +55,27 @@ fn terms(value: Value, folder: &Path) -> Result<Vec<Term>, MatricesError> {
 }
 
 fn unexpected(found: &Value, expected: &'static str) -> MatricesError {
-    MatricesError::Shape { found: found.to_string(), expected }
+    MatricesError::Shape { found: shortened(&found.to_string()), expected }
+}
+
+/// Enough of a value to be recognized.
+fn shortened(text: &str) -> String {
+    const SHOWN: usize = 80;
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
 }
 
 fn term(mut table: Table, folder: &Path) -> Result<Term, MatricesError> {
     let factor = table.remove("factor").map(entry).transpose()?;
     let form = match table.remove("form") {
         None => Form::General,
-        Some(Value::String(name)) => {
-            FORMS.into_iter().find(|form| form.name() == name).ok_or(MatricesError::UnknownForm { found: name })?
-        }
-        Some(other) => return Err(MatricesError::UnknownForm { found: other.to_string() }),
+        Some(Value::String(name)) => FORMS
+            .into_iter()
+            .find(|form| form.name() == name)
+            .ok_or_else(|| MatricesError::UnknownForm { found: shortened(&name) })?,
+        Some(other) => return Err(MatricesError::UnknownForm { found: shortened(&other.to_string()) }),
     };
     let size = table.remove("size");
     let mut layouts = LAYOUTS.into_iter().filter_map(|key| table.remove(key).map(|value| (key, value)));
@@ -144,7 +154,12 @@ fn file(value: Value, folder: &Path) -> Result<Layout, MatricesError> {
     }
     let mut text = String::new();
     let read = File::open(path).and_then(|file| file.take(LARGEST_FILE + 1).read_to_string(&mut text));
-    read.map_err(|error| unreadable(error.to_string()))?;
+    read.map_err(|error| match error.kind() {
+        ErrorKind::InvalidData => {
+            unreadable("it is no text, so no Matrix Market file; scipy.io.mmwrite writes them".to_owned())
+        }
+        _ => unreadable(format!("{error}; files are looked for in the folder of the study")),
+    })?;
     if text.len() as u64 > LARGEST_FILE {
         return Err(unreadable(format!("it has more than {LARGEST_FILE} bytes")));
     }

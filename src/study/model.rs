@@ -216,13 +216,22 @@ impl Lines<'_> {
     ) -> Result<ModelSettings, StudyError> {
         let line = self.place("model.kind", &raw.kind).line;
         let meaning = "the program and its arguments, like [\"python3\", \"{study}/model.py\"]";
-        let arguments = raw.command.take().ok_or(StudyError::MissingKey { line, key: "command", meaning })?;
+        let command = raw.command.take().ok_or(StudyError::MissingKey { line, key: "command", meaning })?;
         let shell = raw.shell.take().is_some_and(Spanned::into_inner);
+        let span = command.span();
+        let arguments = match command.into_inner() {
+            raw::Command::Arguments(list) => Spanned::new(span, list),
+            raw::Command::Line(line) if shell => Spanned::new(span, vec![line]),
+            raw::Command::Line(line) => {
+                let expected = "a list like [\"python3\", \"{study}/model.py\"]; or add shell = true";
+                return Err(self.out_of_range("model.command", &Spanned::new(span, line), expected));
+            }
+        };
         let has_program = arguments.get_ref().first().is_some_and(|program| !program.is_empty());
         let has_nul = arguments.get_ref().iter().any(|argument| argument.contains('\0'));
         if !has_program || has_nul || (shell && arguments.get_ref().len() != 1) {
             let expected = if shell {
-                "one line for the shell, like [\"solve params.json > log.txt\"]"
+                "one line for the shell, like \"solve params.json > log.txt\""
             } else {
                 "a program and its arguments, like [\"python3\", \"{study}/model.py\"], without NUL characters"
             };

@@ -146,6 +146,8 @@ impl Printer {
     }
 
     pub(super) fn line(&mut self, key: &str, value: impl std::fmt::Display, comment: &str) {
+        let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-# ".contains(c);
+        let key = if key.chars().all(is_bare) { key.to_owned() } else { format!("\"{key}\"") };
         let mut line = format!("{key} = {value}");
         if !comment.is_empty() {
             let width = COMMENT_COLUMN.saturating_sub(line.chars().count() + 1);

@@ -46,7 +46,7 @@ pub(super) struct Model {
     pub circulatory: Option<Spanned<toml::Value>>,
     #[serde(rename = "A")]
     pub state: Option<Spanned<toml::Value>>,
-    pub command: Option<Spanned<Vec<String>>>,
+    pub command: Option<Spanned<Command>>,
     pub shell: Option<Spanned<bool>>,
     pub mode: Option<Spanned<String>>,
     pub eigenvalues: Option<Spanned<i64>>,
@@ -57,6 +57,17 @@ pub(super) struct Model {
     pub work: Option<Spanned<String>>,
     pub keep: Option<Spanned<String>>,
     pub version: Option<Spanned<String>>,
+}
+
+/// A program and its arguments, or a line for the shell.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "write the program and its arguments as a list, like [\"python3\", \"{study}/model.py\"]"
+)]
+pub(super) enum Command {
+    Line(String),
+    Arguments(Vec<String>),
 }
 
 /// The value of a helper.

@@ -6,6 +6,7 @@ use super::super::run_arguments::Recording;
 use super::super::{Context, Ending};
 use super::{interruptible, keep_other_files, read_study};
 use crate::artifact::{Format, check_writable, encode, save};
+use crate::build::BuildError;
 use crate::design::Campaign;
 use crate::report::{BuildReport, FailedRun, RecordedRuns};
 use crate::study::Study;
@@ -54,6 +55,9 @@ pub(super) fn build_to_file(
     let surrogate = match crate::build::build(campaign, &context.terminal) {
         Ok(surrogate) => surrogate,
         Err(error) => {
+            if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
+                context.say("failures were recorded earlier; --resume --retry-failed tries them again");
+            }
             books.give_up(context, error.is_interruption());
             return Err(interruptible(error.clone(), error.is_interruption(), source));
         }

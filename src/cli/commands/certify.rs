@@ -44,6 +44,7 @@ pub(in super::super) fn certify(context: &Context, options: &Certify) -> anyhow:
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let start = Instant::now();
     let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
+        .inspect_err(|_| books.say_recorded(context))
         .map_err(|error| interruptible(error.clone(), error.is_interruption(), &source.to_string()))?;
     surrogate.certificates.push(certificate);
     save(output, &encode(&surrogate, format)?)?;

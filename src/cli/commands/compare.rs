@@ -16,7 +16,8 @@ pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow:
     let books = open_here(context, &study, &options.recording)?;
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let source = options.study.display().to_string();
-    let report = judge(context, &surrogate, campaign, &source, options.samples, options.seed)?;
+    let report = judge(context, &surrogate, campaign, &source, options.samples, options.seed);
+    let report = report.inspect_err(|_| books.say_recorded(context))?;
     context.print(&report)?;
     match options.max_error {
         Some(limit) if report.relative_error_percent.is_none_or(|error| error > limit) => {

@@ -24,7 +24,12 @@ pub(in super::super) fn design(context: &Context, options: &Design) -> anyhow::R
     check_writable(&options.emit)?;
     let contents = if journal.exists() { Journal::read(&journal)? } else { Contents::default() };
     remark(context, &journal, &contents);
-    let (asked, is_complete) = step(context, &study, &contents, &source)?;
+    let Step { asked, stage } = step(context, &study, &contents, &source)?;
+    let is_complete = match stage {
+        Stage::Complete => true,
+        Stage::Waiting => false,
+        Stage::Failed(error) => return Err(error),
+    };
     let (runs, open): (Vec<u64>, Vec<&Vec<f64>>) =
         (1..).zip(&asked).filter(|(_, asked)| !asked.is_known).map(|(run, asked)| (run, &asked.point)).unzip();
     let inputs: Vec<String> = study.inputs.names().map(str::to_owned).collect();
@@ -41,18 +46,32 @@ pub(in super::super) fn design(context: &Context, options: &Design) -> anyhow::R
     Ok(Ending::Done)
 }
 
-/// Steps the build as far as it goes on what is known: every point it asked for, and whether it is complete.
-pub(super) fn step(
-    context: &Context,
-    study: &Study,
-    contents: &Contents,
-    source: &str,
-) -> anyhow::Result<(Vec<Asked>, bool)> {
+/// How far a build has come.
+pub(super) struct Step {
+    /// Every point it asked for.
+    pub asked: Vec<Asked>,
+    /// What stopped it.
+    pub stage: Stage,
+}
+
+/// What stops a build that does not run its model.
+pub(super) enum Stage {
+    /// It is done.
+    Complete,
+    /// It waits for answers.
+    Waiting,
+    /// The answers it has cannot be right, or are not enough.
+    Failed(anyhow::Error),
+}
+
+/// Steps the build as far as it goes on what is known.
+pub(super) fn step(context: &Context, study: &Study, contents: &Contents, source: &str) -> anyhow::Result<Step> {
     let ledger = Ledger::blank(study).knowing(contents).asking();
     match build(Campaign { study, ledger: Some(&ledger) }, &context.terminal) {
-        Ok(_) => Ok((ledger.asked(), true)),
-        Err(BuildError::Run(RunError::Unanswered { .. })) => Ok((ledger.asked(), false)),
-        Err(error) => Err(interruptible(error.clone(), error.is_interruption(), source)),
+        Ok(_) => Ok(Step { asked: ledger.asked(), stage: Stage::Complete }),
+        Err(BuildError::Run(RunError::Unanswered { .. })) => Ok(Step { asked: ledger.asked(), stage: Stage::Waiting }),
+        Err(error) if error.is_interruption() => Err(interruptible(error, true, source)),
+        Err(error) => Ok(Step { asked: ledger.asked(), stage: Stage::Failed(interruptible(error, false, source)) }),
     }
 }
 

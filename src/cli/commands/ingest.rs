@@ -3,13 +3,12 @@
 use super::super::recording::{journal_here, plural, remark};
 use super::super::run_arguments::Ingest;
 use super::super::{Context, Ending};
-use super::design::{refuse_derivatives, step};
+use super::design::{Stage, refuse_derivatives, step};
 use super::read_study;
 use crate::design::{Ledger, RowProblem, harvest};
-use crate::journal::{Contents, Journal, Outcome};
+use crate::journal::{Journal, Outcome};
 use crate::model::program::results_table::read_results;
 use crate::report::IngestReport;
-use crate::study::Study;
 use anyhow::{Context as _, anyhow, bail};
 use std::fs::File;
 use std::path::Path;
@@ -36,15 +35,23 @@ pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::R
     let (journal, mut contents) = Journal::open(&path)?;
     remark(context, &path, &contents);
     let known = Ledger::blank(&study).knowing(&contents);
-    let (asked, was_complete) = step(context, &study, &contents, &source)?;
+    let before = step(context, &study, &contents, &source)?;
     let outcome = |point: &[f64]| known.find(point).cloned();
-    let found = harvest(&study, &asked, outcome, &rows).map_err(|problems| refusal(&options.results, &problems))?;
+    let found = harvest(&study, &before.asked, outcome, &rows, options.replace)
+        .map_err(|problems| refusal(&options.results, &problems))?;
+    // What would end the build must not get into the journal, where it could not be taken back.
+    contents.records.extend(found.records.iter().cloned());
+    let after = match &before.stage {
+        Stage::Complete if found.records.is_empty() => before,
+        _ => step(context, &study, &contents, &source)?,
+    };
+    if let Stage::Failed(error) = after.stage {
+        return Err(error.context(format!("{shown}: with these answers the build cannot go on, so none was taken")));
+    }
     journal.append(&found.records.iter().collect::<Vec<_>>())?;
     let failed = found.records.iter().filter(|record| matches!(record.outcome, Outcome::Failed { .. })).count();
     let answered = found.records.len() - failed;
-    let repeated = found.repeated;
-    contents.records.extend(found.records);
-    let (missing, complete) = after(context, &study, &contents, &source, was_complete)?;
+    let missing = after.asked.iter().filter(|asked| !asked.is_known).count() as u64;
     context.print(&IngestReport {
         study: study.name.clone(),
         source,
@@ -52,27 +59,11 @@ pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::R
         rows: rows.len() as u64,
         answered: answered as u64,
         failed: failed as u64,
-        repeated: repeated as u64,
+        repeated: found.repeated as u64,
         missing,
-        complete,
+        complete: matches!(after.stage, Stage::Complete),
     })?;
     Ok(Ending::Done)
-}
-
-/// How many answers the build waits for now, and whether it is complete.
-fn after(
-    context: &Context,
-    study: &Study,
-    contents: &Contents,
-    source: &str,
-    was_complete: bool,
-) -> anyhow::Result<(u64, bool)> {
-    if was_complete {
-        return Ok((0, true));
-    }
-    let step = step(context, study, contents, source);
-    let (asked, complete) = step.context("the results are recorded, but the build cannot go on from them")?;
-    Ok((asked.iter().filter(|asked| !asked.is_known).count() as u64, complete))
 }
 
 fn refusal(path: &Path, problems: &[RowProblem]) -> anyhow::Error {

@@ -18,7 +18,8 @@ pub(in super::super) fn journal(context: &Context, options: &ShowJournal) -> any
     // Reading cuts nothing.
     remark(context, &options.journal, &Contents { torn_bytes: 0, damaged_bytes, records: Vec::new() });
     if let Some(study) = &study {
-        contents.records.retain(|record| record.model == study.model_hash());
+        let model = study.model_hash();
+        contents.records.retain(|record| record.model == model);
     }
     if let Some(csv) = &options.csv {
         keep_inputs(csv, &[&options.journal])?;
@@ -82,7 +83,7 @@ fn export(writer: &mut dyn Write, inputs: &[String], records: &[Record]) -> io::
     for (number, record) in (1..).zip(records) {
         let (status, attempts, lambdas, error) = match &record.outcome {
             Outcome::Answered(computation) => ("answered", 1, &computation.eigenvalues[..], ""),
-            Outcome::Failed { attempts, cause } => ("failed", *attempts, &[][..], cause.as_str()),
+            Outcome::Failed { attempts, cause, .. } => ("failed", *attempts, &[][..], cause.as_str()),
         };
         let (model, seconds) = (hexadecimal(&record.model), record.seconds);
         let mut row: Vec<String> =

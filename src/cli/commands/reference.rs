@@ -25,8 +25,11 @@ pub(in super::super) fn reference(context: &Context, options: &Reference) -> any
     let books = open_here(context, &study, &options.recording)?;
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let start = Instant::now();
-    let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error.is_interruption(), &options.study.display().to_string()))?;
+    let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal);
+    let found = found.map_err(|error| {
+        books.say_recorded(context);
+        interruptible(error.clone(), error.is_interruption(), &options.study.display().to_string())
+    })?;
     let elapsed = start.elapsed().as_secs_f64();
     context.print(&EvalReport::of_model(&study.name, &found.outputs, &found.summary, sampling.seed, elapsed))?;
     Ok(Ending::Done)

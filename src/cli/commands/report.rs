@@ -23,8 +23,9 @@ use std::time::Instant;
 /// Points of the surrogate that are kept for pictures.
 const POINTS: u64 = 20_000;
 
-/// Model runs, as many as the paper's reference.
+/// Model runs, as many as the paper's reference; of programs, which take their time, fewer.
 const RUNS: u64 = 10_000;
+const PROGRAM_RUNS: u64 = 100;
 
 pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.surrogate)?;
@@ -43,9 +44,12 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
             check_problem(surrogate, study).with_context(|| what.clone())?;
             let books = open_here(context, study, &options.recording)?;
             let campaign = Campaign { study, ledger: Some(&books.ledger) };
-            let found = ModelSample::new(campaign, options.runs.unwrap_or(RUNS), options.seed, &context.terminal)
-                .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
-                .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
+            let default_runs = if study.model.is_external() { PROGRAM_RUNS } else { RUNS };
+            let found =
+                ModelSample::new(campaign, options.runs.unwrap_or(default_runs), options.seed, &context.terminal)
+                    .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
+                    .inspect_err(|_| books.say_recorded(context))
+                    .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
             Some(found)
         }
         _ => None,

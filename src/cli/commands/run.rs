@@ -2,6 +2,7 @@
 
 use super::super::arguments::Run;
 use super::super::recording::{self, journal_of_build};
+use super::super::run_arguments::Recording;
 use super::super::{Context, Ending};
 use super::build::build_to_file;
 use super::compare::judge;
@@ -9,9 +10,10 @@ use super::eval::sample;
 use super::{keep_other_files, read_study};
 use crate::artifact::Format;
 use crate::design::Campaign;
+use crate::model::ModelError;
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table, count};
 use crate::spectrum::Target;
-use crate::study::Study;
+use crate::study::{ModelSettings, Study};
 use crate::surrogate::Surrogate;
 use anyhow::Context as _;
 use serde::Serialize;
@@ -29,11 +31,13 @@ const PAPERS_FIGURES: [&str; 4] = ["paper, sparse PC", "1706–2117", "3.15–5.
 const EVAL_SAMPLES: u64 = 1_000_000;
 /// As many direct computations as the paper's reference.
 const COMPARE_SAMPLES: u64 = 10_000;
+/// Programs take their time.
+const COMPARE_PROGRAM_RUNS: u64 = 100;
 const SAMPLE_SEED: u64 = 1;
 
 pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<Ending> {
     let study = match &options.study {
-        Some(path) => read_study(path)?,
+        Some(path) => runnable(read_study(path)?).with_context(|| path.display().to_string())?,
         None => Study::from_toml(BUILT_IN_STUDY).context("the built-in study")?,
     };
     let source = options.study.as_ref().map_or("the built-in study".to_owned(), |path| path.display().to_string());
@@ -54,6 +58,14 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
     }
     context.print(&RunReport { build, eval, compare, methods })?;
     Ok(Ending::Done)
+}
+
+/// Refuses models that pcc does not run.
+fn runnable(study: Study) -> anyhow::Result<Study> {
+    match study.model {
+        ModelSettings::Table(_) => Err(ModelError::Unrun.into()),
+        _ => Ok(study),
+    }
 }
 
 /// The built-in study without derivatives, and by the paper's method.
@@ -87,9 +99,12 @@ fn build_and_compare(
     keep_other_files(&path)?;
     let (surrogate, build) = build_to_file(context, &study, source, &path, Format::Binary, &options.recording)?;
     let journal = study.model.is_external().then(|| journal_of_build(&study, &path));
-    let books = recording::open(context, &study, &options.recording, journal)?;
+    // The build's own runs are in it by now.
+    let recording = Recording { resume: options.recording.resume || journal.is_some(), ..options.recording.clone() };
+    let books = recording::open(context, &study, &recording, journal)?;
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
-    let compare = judge(context, &surrogate, campaign, source, COMPARE_SAMPLES, seed)
+    let samples = if study.model.is_external() { COMPARE_PROGRAM_RUNS } else { COMPARE_SAMPLES };
+    let compare = judge(context, &surrogate, campaign, source, samples, seed)
         .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
     Ok((surrogate, build, compare))
 }

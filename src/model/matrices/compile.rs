@@ -40,8 +40,8 @@ fn compiler(description: &Description, inputs: &[&str]) -> Result<Compiler, Matr
         move |cause: ExpressionError| MatricesError::Name { table, name, cause: Box::new(cause) }
     };
     // One by one, so that the error names the input.
-    for (at, name) in inputs.iter().enumerate() {
-        Compiler::new(&inputs[..=at]).map_err(wrong("inputs", name))?;
+    for name in inputs {
+        Compiler::new(&[name]).map_err(wrong("inputs", name))?;
     }
     let mut compiler = Compiler::new(inputs).map_err(wrong("inputs", ""))?;
     for (name, value) in &description.constants {
@@ -111,6 +111,12 @@ impl Builder {
         };
         for (number, term) in (1..).zip(terms) {
             self.add_term(&mut assembly, role.name(), number, term)?;
+        }
+        if let Some(at) = assembly.fixed.iter().position(|value| !value.is_finite()) {
+            let (row, column) = (at % self.size + 1, at / self.size + 1);
+            let text = "the sum of its constant terms".to_owned();
+            let value = assembly.fixed[(row - 1, column - 1)];
+            return Err(MatricesError::NotFinite { matrix: role.name(), row, column, text, value });
         }
         Ok(assembly)
     }
@@ -196,7 +202,11 @@ impl Builder {
                 for (row, entries) in (1..).zip(rows) {
                     let expected = if form == Form::General { self.size } else { row };
                     if entries.len() != expected {
-                        return Err(MatricesError::RowLength { matrix, row, found: entries.len(), expected });
+                        let hint = match form {
+                            Form::General => "",
+                            _ => ": with this form rows end at the diagonal",
+                        };
+                        return Err(MatricesError::RowLength { matrix, row, found: entries.len(), expected, hint });
                     }
                 }
                 let row = |(row, entries): (usize, &'a Vec<Entry>)| {

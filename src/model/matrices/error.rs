@@ -56,7 +56,7 @@ pub enum MatricesError {
     #[error("entries need a size, the number of rows; add size = …")]
     NoSize,
     /// A file cannot be read.
-    #[error("{file} cannot be read: {cause}; files are looked for in the folder of the study")]
+    #[error("{file} cannot be read: {cause}")]
     Unreadable {
         /// Its name.
         file: String,
@@ -85,7 +85,7 @@ pub enum MatricesError {
         most: usize,
     },
     /// A row of the wrong length.
-    #[error("{matrix}: row {row} has {found} entries, but should have {expected}")]
+    #[error("{matrix}: row {row} has {found} entries, but should have {expected}{hint}")]
     RowLength {
         /// Name of the matrix.
         matrix: &'static str,
@@ -95,6 +95,8 @@ pub enum MatricesError {
         found: usize,
         /// What it should have.
         expected: usize,
+        /// Why, if that is not plain.
+        hint: &'static str,
     },
     /// Matrices or terms of different sizes, or a file that is not square.
     #[error("{matrix}: a term is {rows} × {columns}, but the system has {size} rows")]

@@ -207,6 +207,22 @@ pub enum ProgramFailure {
 }
 
 impl ProgramFailure {
+    /// Whether the program was not run at all, or its end not seen: something is wrong with the settings or the machine.
+    pub fn is_of_machine(&self) -> bool {
+        matches!(
+            self,
+            Self::NoCommand
+                | Self::ShellCommand { .. }
+                | Self::PointLength { .. }
+                | Self::ValueNotFinite { .. }
+                | Self::Folder { .. }
+                | Self::Interrupted
+                | Self::NotFound { .. }
+                | Self::NotStarted { .. }
+                | Self::Lost { .. }
+        )
+    }
+
     /// Whether another attempt must end in the same way.
     pub(super) fn is_final(&self) -> bool {
         matches!(

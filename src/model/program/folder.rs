@@ -15,6 +15,9 @@ use std::time::Duration;
 /// Hexadecimal digits of a name that tell points from each other. Should two share them, they get different numbers.
 const DIGITS: usize = 16;
 
+/// How often the folder of all runs may vanish before one is made in it.
+const VANISHINGS: usize = 10;
+
 /// Attempts to remove a folder, and the time between them: a process that was killed may be writing its last file.
 const REMOVALS: usize = 3;
 const BETWEEN_REMOVALS: Duration = Duration::from_millis(10);
@@ -25,12 +28,17 @@ pub(super) fn create(work_folder: &Path, kind: &str, points: &[&[f64]]) -> Resul
     let work_folder = std::path::absolute(work_folder).map_err(|error| failure(work_folder, &error))?;
     fs::create_dir_all(&work_folder).map_err(|error| failure(&work_folder, &error))?;
     let digits = digits(points);
-    let mut number = 1_u64;
+    let (mut number, mut vanished) = (1_u64, 0);
     loop {
         let folder = work_folder.join(format!("{kind}-{digits}-{number}"));
         match fs::create_dir(&folder) {
             Ok(()) => return Ok(folder),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => number += 1,
+            // Another pcc has removed the folder, which was empty for a moment.
+            Err(error) if error.kind() == io::ErrorKind::NotFound && vanished < VANISHINGS => {
+                vanished += 1;
+                fs::create_dir_all(&work_folder).map_err(|error| failure(&work_folder, &error))?;
+            }
             Err(error) => return Err(failure(&folder, &error)),
         }
     }
