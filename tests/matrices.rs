@@ -42,6 +42,7 @@ const SAME_MATRIX: f64 = 1e-14;
 fn the_clutch_as_matrices_is_the_built_in_one() {
     let (written, built_in) = (study("clutch-matrices"), invariants_study(8));
     assert_eq!(written.inputs, built_in.inputs);
+    let mut largest_error = 0f64;
     let (model, clutch) = (written.model().unwrap(), built_in.model().unwrap());
     for point in random_points(&written.inputs, 3, Purpose::Evaluation, 0..200) {
         let point = written.inputs.physical(&point);
@@ -53,14 +54,14 @@ fn the_clutch_as_matrices_is_the_built_in_one() {
             assert!((found - expected).amax() <= SAME_MATRIX * expected.amax());
         }
 
-        // The fourfold zero of the rigid motions scatters; everything else is simple, or a pair away from coalescence.
+        // All but the fourfold zero of the rigid motions.
         let modes = |model: &dyn Model| Spectrum::new(&model.eigenvalues(&point).unwrap()).unwrap();
         let (found, expected) = (modes(&*model), modes(&*clutch));
-        let gap = (expected.oscillating()[2] - expected.oscillating()[3]).norm() / expected.largest();
         let error = distance(found.oscillating().to_vec(), expected.oscillating()) / expected.largest();
-        // Rounding of the entries moves a pair at distance d by ε/d.
-        assert!(error <= 1e-12_f64.max(2.0 * f64::EPSILON / gap), "{error:e} at a gap of {gap:e}");
+        largest_error = largest_error.max(error);
+        assert!(error <= 1e-12, "{error:e}");
     }
+    println!("largest difference of an eigenvalue: {largest_error:.1e} of the largest");
 }
 
 /// Names of the other shipped studies by matrices.

@@ -86,7 +86,6 @@ pub(super) fn open(
     let Some(path) = chosen.filter(|_| !options.no_journal) else {
         return Ok(Books { ledger: Ledger::blank(study), journal: None, is_disposable: false });
     };
-    let is_new = !path.exists();
     let is_unasked = options.journal.is_none() && !wants_journal && !study.model.is_external();
     let (journal, contents) = match Journal::open(&path) {
         // Builds of pcc's own models may run beside each other, as long as nobody asked for a journal.
@@ -104,33 +103,39 @@ pub(super) fn open(
     if options.retry_failed {
         ledger = ledger.retrying_failures();
     }
-    let model = study.model_hash();
-    let own = contents.records.iter().filter(|record| record.model == model).count();
-    let (shown, runs) = (path.display(), plural(own, "model run"));
-    if options.resume || is_table {
+    say_what_is_known(context, study, &path, &contents, wants_journal);
+    if wants_journal {
         ledger = ledger.knowing(&contents);
-        let others = contents.records.len() - own;
-        match (own, others) {
-            (0, 0) if is_new && options.resume => {
-                context.say(&format!("{shown}: is new, so there is nothing to resume from"))
-            }
-            (0, others) if others > 0 => context.say(&format!(
-                "{shown}: has {} of other models and none of this one; model, constants or inputs have changed",
-                plural(others, "run")
-            )),
-            (0, _) => {}
-            _ => {
-                context.say(&format!("{shown}: {runs} recorded"));
-                changed_programs(context, study, &path);
-            }
-        }
-    } else if own > 0 && study.model.is_external() {
-        context.say(&format!("{shown}: {runs} recorded earlier are not used; stop and add --resume to use them"));
     }
     if is_table {
         ledger = ledger.asking();
     }
     Ok(Books { ledger, journal: Some(path), is_disposable })
+}
+
+/// Says what a journal has of this model, and whether it is used.
+fn say_what_is_known(context: &Context, study: &Study, path: &Path, contents: &Contents, is_used: bool) {
+    let model = study.model_hash();
+    let own = contents.records.iter().filter(|record| record.model == model).count();
+    let others = contents.records.len() - own;
+    let (shown, runs) = (path.display(), plural(own, "model run"));
+    match (own, is_used) {
+        (0, true) if others > 0 => context.say(&format!(
+            "{shown}: has {} of other models and none of this one; model, constants or inputs have changed",
+            plural(others, "run")
+        )),
+        (0, true) if !matches!(study.model, ModelSettings::Table(_)) => {
+            context.say(&format!("{shown}: has no model runs, so there is nothing to resume from"));
+        }
+        (0, _) => {}
+        (_, true) => {
+            context.say(&format!("{shown}: {runs} recorded"));
+            changed_programs(context, study, path);
+        }
+        (_, false) => {
+            context.say(&format!("{shown}: {runs} recorded earlier are not used; stop and add --resume to use them"));
+        }
+    }
 }
 
 /// Says which files of the program are newer than its last recorded run: what they answer now may be something else.

@@ -95,6 +95,12 @@ impl Record {
             return None;
         }
         let body = bytes.get(FRAME_HEAD..FRAME_HEAD + size)?;
+        // Cheaper than a checksum over what is no record at all.
+        let inputs: [u8; 4] = body.get(HASH_BYTES + 8..HASH_BYTES + 12)?.try_into().ok()?;
+        let status = (u32::from_le_bytes(inputs) as usize).checked_mul(8)?.checked_add(HASH_BYTES + 12)?;
+        if !matches!(body.get(status), Some(0..=2)) {
+            return None;
+        }
         if checksum(&length, body) != u32::from_le_bytes(crc) {
             return None;
         }
