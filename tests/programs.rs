@@ -523,3 +523,23 @@ fn studies_of_programs_are_checked_before_anything_runs() {
     let missing = stderr(&pcc(folder.path(), &["build", "bad.toml"]));
     assert!(missing.contains("no-such-program"), "{missing}");
 }
+
+/// With derivatives, which are recorded as well.
+#[test]
+fn builds_from_a_journal_cut_anywhere_have_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("clutch.toml"), support::text("surrogates/clutch-r2.toml")).unwrap();
+    output(folder.path(), &["build", "clutch.toml", "-o", "whole.pcc", "--journal", "whole.journal"]);
+    let (expected, journal) = (fs::read(path("whole.pcc")).unwrap(), fs::read(path("whole.journal")).unwrap());
+    let runs = Journal::read(&path("whole.journal")).unwrap().records.len();
+    for part in 0..=8 {
+        fs::write(path("cut.journal"), &journal[..journal.len() * part / 8]).unwrap();
+        let known = Journal::read(&path("cut.journal")).unwrap().records.len();
+        let arguments = ["build", "clutch.toml", "-o", "cut.pcc", "--journal", "cut.journal", "--resume", "--json"];
+        let said: serde_json::Value = serde_json::from_str(&output(folder.path(), &arguments)).unwrap();
+        assert_eq!(said["reused_runs"], known);
+        assert_eq!(fs::read(path("cut.pcc")).unwrap(), expected, "{known} of {runs} runs known");
+        assert_eq!(Journal::read(&path("cut.journal")).unwrap().records.len(), runs);
+    }
+}
