@@ -67,7 +67,8 @@ impl BuildError {
     }
 }
 
-/// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool: the same bits for any number of threads.
+/// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool: the same bits
+/// for any number of threads.
 ///
 /// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives enter the
 /// fit beside the values if the study wants them and the model has them. All components share one nested design. Level by level

@@ -28,6 +28,9 @@ pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::R
     };
     let inputs: Vec<String> = study.inputs.names().map(str::to_owned).collect();
     let shown = options.results.display();
+    if options.results.exists() && !options.results.is_file() {
+        bail!("{shown}: is no file; write the table to one first");
+    }
     let file = File::open(&options.results).with_context(|| format!("{shown} cannot be read"))?;
     let rows = read_results(file, &inputs, answers.eigenvalues).with_context(|| shown.to_string())?;
 
