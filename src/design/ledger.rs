@@ -147,11 +147,6 @@ impl Ledger {
         self.known.get(&bits(point))
     }
 
-    /// Number of points that are known.
-    pub fn known_points(&self) -> usize {
-        self.known.len()
-    }
-
     /// Whether the model may be run.
     pub fn may_run(&self) -> bool {
         self.unknown == Unknown::Run
@@ -249,7 +244,8 @@ fn rank(outcome: &Outcome) -> u8 {
     }
 }
 
-fn bits(point: &[f64]) -> Vec<u64> {
+/// What tells points from each other.
+pub(super) fn bits(point: &[f64]) -> Vec<u64> {
     point.iter().map(|value| value.to_bits()).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Answers that others computed: rows of a table become records of a journal.
 
-use super::ledger::Asked;
+use super::ledger::{Asked, bits};
 use crate::journal::{HASH_BYTES, Outcome, Record};
 use crate::model::program::results_table::ResultRow;
 use crate::spectrum::{Computation, Spectrum, SpectrumError};
@@ -210,8 +210,4 @@ fn difference(a: &[Complex<f64>], b: &[Complex<f64>]) -> (f64, f64) {
         largest = (left.swap_remove(nearest) - lambda).norm().max(largest);
     }
     (largest, scale)
-}
-
-fn bits(point: &[f64]) -> Vec<u64> {
-    point.iter().map(|value| value.to_bits()).collect()
 }

@@ -188,11 +188,6 @@ impl Journal {
         self.tail().is_worthless = true;
     }
 
-    /// Where it is.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     fn tail(&self) -> MutexGuard<'_, Tail> {
         self.file.lock().unwrap_or_else(PoisonError::into_inner)
     }

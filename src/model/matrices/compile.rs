@@ -70,12 +70,12 @@ fn size(description: &Description) -> Result<usize, MatricesError> {
         ));
     }
     let first = &description.matrices[0];
-    let size = match &first.terms[0].layout {
+    let size = first.terms.first().map_or(0, |term| match &term.layout {
         Layout::Rows(rows) => rows.len(),
         Layout::Diagonal(list) => list.len(),
         Layout::Entries { size, .. } => *size,
         Layout::File { matrix, .. } => matrix.rows,
-    };
+    });
     match size {
         1..=MOST_ROWS => Ok(size),
         _ => Err(MatricesError::Size { matrix: first.role.name(), size, most: MOST_ROWS }),

@@ -209,22 +209,17 @@ pub enum ProgramFailure {
 impl ProgramFailure {
     /// Whether the program was not run at all, or its end not seen: something is wrong with the settings or the machine.
     pub fn is_of_machine(&self) -> bool {
-        matches!(
-            self,
-            Self::NoCommand
-                | Self::ShellCommand { .. }
-                | Self::PointLength { .. }
-                | Self::ValueNotFinite { .. }
-                | Self::Folder { .. }
-                | Self::Interrupted
-                | Self::NotFound { .. }
-                | Self::NotStarted { .. }
-                | Self::Lost { .. }
-        )
+        let may_pass = matches!(self, Self::Folder { .. } | Self::NotStarted { .. } | Self::Lost { .. });
+        may_pass || self.is_never_to_run()
     }
 
     /// Whether another attempt must end in the same way.
     pub(super) fn is_final(&self) -> bool {
+        self.is_never_to_run() || matches!(self, Self::Table(TableError::ReservedName { .. }))
+    }
+
+    /// Whether the program cannot be started as it is described, or is not to be started any more.
+    fn is_never_to_run(&self) -> bool {
         matches!(
             self,
             Self::NoCommand
@@ -233,7 +228,6 @@ impl ProgramFailure {
                 | Self::ValueNotFinite { .. }
                 | Self::Interrupted
                 | Self::NotFound { .. }
-                | Self::Table(TableError::ReservedName { .. })
         )
     }
 }
