@@ -4,16 +4,15 @@
 //! shipped surrogate with eight inputs, in turn and several times, and prints the best of each: other work on the machine can only
 //! slow a part down. Floating-point operations are those that the plan counts.
 
-use pcc::artifact::decode;
-use pcc::design::Runner;
-use pcc::eval::{LANES, Lanes, Plan, Question, Sampler, Survey, monte_carlo};
-use pcc::input::random_points;
-use pcc::numerics::InstructionSet;
-use pcc::progress::Silent;
-use pcc::random::{Purpose, unit_pairs};
 use pcc::report::{Align, Table};
-use pcc::study::Study;
-use pcc::surrogate::Surrogate;
+use pcc_compile::campaign::Runner;
+use pcc_compile::study::Study;
+use pcc_evaluate::artifact::decode;
+use pcc_evaluate::evaluation::{LANES, Lanes, Plan, Question, Sampler, Survey, monte_carlo};
+use pcc_evaluate::foundation::{InstructionSet, Silent};
+use pcc_evaluate::probability::inputs::random_points;
+use pcc_evaluate::probability::random::{Purpose, unit_pairs};
+use pcc_evaluate::surrogate::Surrogate;
 use pulp::{Simd, WithSimd};
 use std::hint::black_box;
 use std::time::Instant;

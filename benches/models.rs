@@ -2,13 +2,13 @@
 //!
 //! `cargo bench --bench models` prints one line per figure; ratios are of times taken in turn, in the same process.
 
-use pcc::design::{Campaign, Ledger, Runner};
-use pcc::input::random_points;
-use pcc::journal::Journal;
-use pcc::model::Model;
-use pcc::progress::Silent;
-use pcc::random::Purpose;
-use pcc::study::Study;
+use pcc_compile::campaign::journal::Journal;
+use pcc_compile::campaign::{Campaign, Ledger, Runner};
+use pcc_compile::mechanics::model::Model;
+use pcc_compile::study::Study;
+use pcc_evaluate::foundation::Silent;
+use pcc_evaluate::probability::inputs::random_points;
+use pcc_evaluate::probability::random::Purpose;
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -89,7 +89,7 @@ fn clutch_as_matrices() -> Result<(), Box<dyn Error>> {
 fn finite_elements() -> Result<(), Box<dyn Error>> {
     let study = shipped("block")?;
     let start = Instant::now();
-    let surrogate = pcc::build::build(&study, &Silent)?;
+    let surrogate = pcc_compile::compilation::build(&study, &Silent)?;
     let runs = surrogate.training.counts.direct_computations;
     println!(
         "block, 200 degrees of freedom, 4 inputs: built from {runs} runs in {:.1} s on {} threads",

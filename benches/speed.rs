@@ -4,18 +4,18 @@
 //! and samples and on one for the model and for fits of one component.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use pcc::artifact::decode;
-use pcc::design::{NestedLatinHypercube, Runner};
-use pcc::eval::monte_carlo;
-use pcc::fit::minimum_norm::{self, Learnt};
-use pcc::fit::stepwise;
-use pcc::index_set::Hyperbolic;
-use pcc::input::random_points;
-use pcc::polynomial::Family;
-use pcc::progress::Silent;
-use pcc::random::Purpose;
-use pcc::regression::{BasisTables, Response};
-use pcc::study::{FitMethod, Smooth, Study};
+use pcc_compile::campaign::Runner;
+use pcc_compile::fitting::design::NestedLatinHypercube;
+use pcc_compile::fitting::fit::minimum_norm::{self, Learnt};
+use pcc_compile::fitting::fit::stepwise;
+use pcc_compile::fitting::regression::{BasisTables, Response};
+use pcc_compile::study::{FitMethod, Smooth, Study};
+use pcc_evaluate::artifact::decode;
+use pcc_evaluate::evaluation::monte_carlo;
+use pcc_evaluate::foundation::Silent;
+use pcc_evaluate::polynomials::{Family, Hyperbolic};
+use pcc_evaluate::probability::inputs::random_points;
+use pcc_evaluate::probability::random::Purpose;
 use std::hint::black_box;
 
 const STUDY: &str = include_str!("../surrogates/clutch-r8-eigenvalues.toml");
@@ -98,7 +98,9 @@ fn build(criterion: &mut Criterion) {
     for text in [STUDY, INVARIANTS] {
         let study = Study::from_toml(text).expect("the shipped study is valid");
         group.bench_function(format!("{}, all cores", study.name), |bencher| {
-            bencher.iter(|| pcc::build::build(black_box(&study), &Silent).expect("the shipped study builds"));
+            bencher.iter(|| {
+                pcc_compile::compilation::build(black_box(&study), &Silent).expect("the shipped study builds")
+            });
         });
     }
     group.finish();
@@ -115,7 +117,7 @@ fn evaluation(criterion: &mut Criterion) {
         let lines =
             format!("[fit]\nmethod = \"me-gpc\"\ntheta_1 = 0.0\nelements = {elements}\n[design]\nmaximum = 1000000");
         let study = Study::from_toml(&format!("{R5_STUDY}\n{lines}\n")).expect("the study is valid");
-        let surrogate = pcc::build::build(&study, &Silent).expect("the clutch converges");
+        let surrogate = pcc_compile::compilation::build(&study, &Silent).expect("the clutch converges");
         (format!("clutch-r5-eigenvalues on {elements} elements"), surrogate)
     });
     for (name, surrogate) in shipped.into_iter().chain(full) {

@@ -2,10 +2,10 @@
 
 use super::arguments::Sampling;
 use super::question::{HistogramRequest, SamplerName, Shard, condition, event, histogram, level, shard, sweep};
-use crate::eval::{Condition, Event, Sweep};
-use crate::numerics::InstructionSet;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use pcc_evaluate::evaluation::{Condition, Event, Sweep};
+use pcc_evaluate::foundation::InstructionSet;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]

@@ -9,10 +9,10 @@ mod question;
 mod recording;
 mod run_arguments;
 
-use crate::progress::Interrupted;
 use arguments::{Arguments, Command};
 use clap::Parser;
 use clap::error::ErrorKind;
+use pcc_evaluate::foundation::Interrupted;
 use progress::{Interrupt, Terminal};
 use serde::Serialize;
 use std::fmt::Display;

@@ -1,9 +1,8 @@
 //! Points from a CSV file, results to another.
 
-use crate::artifact::save_with;
-use crate::input::{InputError, InputSpace};
-use crate::progress::Observer;
-use nalgebra::Complex;
+use num_complex::Complex;
+use pcc_evaluate::foundation::{Observer, save_with};
+use pcc_evaluate::probability::inputs::{InputError, InputSpace};
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;

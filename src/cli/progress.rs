@@ -1,7 +1,7 @@
 //! Progress bars on a terminal, and Ctrl-C.
 
-use crate::progress::Observer;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pcc_evaluate::foundation::Observer;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,7 +1,7 @@
 //! Questions as they are typed: `mu=0.1..0.2`, `mu=0:0.5:101`, `max_re<-1`, `max_re=-20:20:40`.
 
-use crate::eval::{Condition, Event, Sampler, Sweep};
 use clap::ValueEnum;
+use pcc_evaluate::evaluation::{Condition, Event, Sampler, Sweep};
 
 /// A sampler by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -2,10 +2,10 @@
 
 use super::Context;
 use super::run_arguments::Recording;
-use crate::design::Ledger;
-use crate::journal::{Contents, Journal};
-use crate::study::{ModelSettings, Study};
 use anyhow::bail;
+use pcc_compile::campaign::Ledger;
+use pcc_compile::campaign::journal::{Contents, Journal};
+use pcc_compile::study::{ModelSettings, Study};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

@@ -1,10 +1,10 @@
 //! What a build spent and how well each component is fitted.
 
 use super::table::{Align, Table, count, significant};
-use crate::design::Failure;
-use crate::input::InputSpace;
-use crate::study::DesignKind;
-use crate::surrogate::{SettingValue, StopReason, Surrogate};
+use pcc_compile::campaign::Failure;
+use pcc_compile::study::DesignKind;
+use pcc_evaluate::probability::inputs::InputSpace;
+use pcc_evaluate::surrogate::{SettingValue, StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
@@ -116,7 +116,7 @@ pub struct FitReport {
 impl FitReport {
     /// The fits of all components.
     pub fn of(surrogate: &Surrogate) -> Vec<Self> {
-        let report = |component: &crate::spectrum::Component| {
+        let report = |component: &pcc_evaluate::components::Component| {
             let fit = surrogate.fit_of(component.id);
             Self {
                 name: component.name.clone(),
@@ -339,7 +339,7 @@ impl fmt::Display for BuildReport {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::artifact::decode;
+    use pcc_evaluate::artifact::decode;
 
     #[test]
     fn runs_without_derivatives_are_counted_and_reported() {

@@ -1,7 +1,7 @@
 //! A verified bound, freshly made.
 
 use super::table::count;
-use crate::surrogate::{Certificate, Surrogate};
+use pcc_evaluate::surrogate::{Certificate, Surrogate};
 use serde::Serialize;
 use std::fmt;
 

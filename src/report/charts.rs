@@ -1,11 +1,11 @@
 //! The pictures of a surrogate.
 
 use super::sensitivity::{Bounded, IndexPair, SensitivityReport};
-use crate::plot::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol};
-use crate::spectrum::Block;
-use crate::statistics::density;
-use crate::surrogate::Surrogate;
-use nalgebra::Complex;
+use num_complex::Complex;
+use pcc_charts::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol};
+use pcc_evaluate::components::Block;
+use pcc_evaluate::probability::statistics::density;
+use pcc_evaluate::surrogate::Surrogate;
 use std::f64::consts::TAU;
 
 /// Bins of a density.

@@ -1,7 +1,7 @@
 //! A surrogate judged against its model.
 
 use super::table::{Align, Table, count, significant};
-use crate::reference::Comparison;
+use pcc_compile::reference::Comparison;
 use serde::Serialize;
 use std::fmt;
 

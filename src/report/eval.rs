@@ -5,10 +5,10 @@ use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::sureness::Sureness;
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
 use super::table::count;
-use crate::eval::{Answer, Condition, CriticalValues, Question, Sampler, Sensitivities};
-use crate::spectrum::{ModeSummary, Output, Summary};
-use crate::statistics::{Moments, Share};
-use crate::surrogate::{Quantile, Surrogate};
+use pcc_evaluate::components::{ModeSummary, Output, Summary};
+use pcc_evaluate::evaluation::{Answer, Condition, CriticalValues, Question, Sampler, Sensitivities};
+use pcc_evaluate::probability::statistics::{Moments, Share};
+use pcc_evaluate::surrogate::{Quantile, Surrogate};
 use serde::Serialize;
 use std::f64::consts::TAU;
 

@@ -3,8 +3,8 @@
 use super::eval::{EvalReport, SobolReport, Statistics};
 use super::survey::{conditions_text, events_text, histogram_text, quantiles_table};
 use super::table::{Align, Table, count, significant};
-use crate::eval::Sampler;
-use crate::statistics::Interval;
+use pcc_evaluate::evaluation::Sampler;
+use pcc_evaluate::probability::statistics::Interval;
 use std::fmt::{self, Write};
 
 /// Components side by side in a table of Sobol' indices: what fits a terminal.

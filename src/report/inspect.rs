@@ -4,10 +4,10 @@ use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::sureness::{error_text, is_of_modes_left_out};
 use super::table::{Align, Table, count, significant};
-use crate::artifact::{Artifact, Format};
-use crate::eval::{Plan, self_test_difference};
-use crate::input::Marginal;
-use crate::surrogate::{Setting, SettingValue};
+use pcc_evaluate::artifact::{Artifact, Format};
+use pcc_evaluate::evaluation::{Plan, self_test_difference};
+use pcc_evaluate::probability::inputs::Marginal;
+use pcc_evaluate::surrogate::{Setting, SettingValue};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -173,8 +173,8 @@ fn setting(setting: &Setting) -> (String, serde_json::Value) {
     (setting.key.clone(), value)
 }
 
-fn input(input: &crate::input::Input) -> InputReport {
-    let Marginal::Uniform(uniform) = &input.marginal;
+fn input(input: &pcc_evaluate::probability::inputs::Input) -> InputReport {
+    let Marginal::Uniform(uniform) = input.marginal;
     InputReport {
         name: input.name.clone(),
         distribution: "uniform",

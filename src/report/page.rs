@@ -2,7 +2,7 @@
 //! in dark.
 
 use super::table::{Align, Table};
-use crate::plot::{Chart, STYLE, escape};
+use pcc_charts::{Chart, STYLE, escape};
 use std::fmt::Write;
 
 /// Nothing but the styles and links inside the page may be loaded, whatever names it shows.
@@ -166,7 +166,7 @@ fn data_link(csv: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::{Axis, Color, Marks, Series};
+    use pcc_charts::{Axis, Color, Marks, Series};
 
     const HOSTILE: &str = "</script><img src=x onerror=alert(1)>\"'&";
 

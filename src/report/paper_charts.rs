@@ -1,9 +1,9 @@
 //! The paper's figures 3 and 4, and the errors of all methods over what they cost.
 
 use super::charts::points;
-use crate::plot::{Axis, Chart, Color, Guide, Marks, Series, Symbol};
 use crate::reproduce::{Cloud, PAIR, Row, TABLE_2};
-use nalgebra::Complex;
+use num_complex::Complex;
+use pcc_charts::{Axis, Chart, Color, Guide, Marks, Series, Symbol};
 use std::f64::consts::TAU;
 
 type Pair = [Vec<Complex<f64>>; 2];

@@ -5,8 +5,8 @@ use super::page::Page;
 use super::paper_charts::{cost_chart, figure_3, figure_4};
 use super::sensitivity::SensitivityReport;
 use super::table::{Align, Table, count, significant};
-use crate::plot::{Chart, Color, sheet};
 use crate::reproduce::{Closer, Cloud, MOST_INPUTS, PAIR, PaperRow, Range, Reproduction, Row, TABLE_2};
+use pcc_charts::{Chart, Color, sheet};
 
 /// Errors below this are not worth digits, in percent.
 const SMALLEST_ERROR: f64 = 1e-4;

@@ -1,7 +1,9 @@
 //! Which inputs decide stability, and where one of them does.
 
 use super::table::{Align, Table, significant};
-use crate::eval::{CRITICAL_LEVELS, CriticalValues, Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity};
+use pcc_evaluate::evaluation::{
+    CRITICAL_LEVELS, CriticalValues, Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity,
+};
 use serde::Serialize;
 use std::fmt;
 

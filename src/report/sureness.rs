@@ -1,8 +1,8 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
 use super::table::count;
-use crate::statistics::{Interval, Proportion};
-use crate::surrogate::{Certificate, Decision, Surrogate};
+use pcc_evaluate::probability::statistics::{Interval, Proportion};
+use pcc_evaluate::surrogate::{Certificate, Decision, Surrogate};
 use serde::Serialize;
 use std::fmt;
 

@@ -6,9 +6,9 @@ use super::eval::EvalReport;
 use super::inspect::InspectReport;
 use super::page::Page;
 use super::table::{count, significant};
-use crate::plot::Color;
-use crate::spectrum::Block;
-use crate::surrogate::Surrogate;
+use pcc_charts::Color;
+use pcc_evaluate::components::Block;
+use pcc_evaluate::surrogate::Surrogate;
 
 /// Inputs over which modes are drawn.
 const DRAWN_INPUTS: usize = 3;

@@ -1,8 +1,8 @@
 //! What else was counted: events, histograms, quantiles; and what the samples were confined to.
 
 use super::table::{Align, Table, count, plain, significant};
-use crate::eval::{Bins, Cell, Condition, Histogram, Question};
-use crate::statistics::Interval;
+use pcc_evaluate::evaluation::{Bins, Cell, Condition, Histogram, Question};
+use pcc_evaluate::probability::statistics::Interval;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -67,7 +67,7 @@ pub struct LevelReport {
 
 /// The events of a question.
 pub(super) fn events(question: &Question, cell: &Cell) -> Vec<EventReport> {
-    let report = |(number, event): (usize, &crate::eval::Event)| {
+    let report = |(number, event): (usize, &pcc_evaluate::evaluation::Event)| {
         let share = cell.share(LEVEL, |tally| tally.events[number]);
         let samples = cell.total.events[number];
         EventReport { event: event.text(), samples, proportion: share.value, interval: share.interval }

@@ -5,10 +5,10 @@ use super::eval::{Asked, QuantileReport};
 use super::eval_text::pace;
 use super::survey::{EventReport, LEVEL, conditions_text, events};
 use super::table::{Align, Table, count, plain, significant};
-use crate::eval::{Cell, Condition, Sampler, Sweep};
-use crate::plot::{Axis, Cells, Chart, Color, Marks, Series, Symbol, sheet};
-use crate::statistics::Interval;
-use crate::surrogate::Decision;
+use pcc_charts::{Axis, Cells, Chart, Color, Marks, Series, Symbol, sheet};
+use pcc_evaluate::evaluation::{Cell, Condition, Sampler, Sweep};
+use pcc_evaluate::probability::statistics::Interval;
+use pcc_evaluate::surrogate::Decision;
 use serde::Serialize;
 use std::fmt;
 

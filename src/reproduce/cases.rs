@@ -1,7 +1,7 @@
 //! The builds that the paper's table 2 is made of, and those that go beyond it.
 
 use super::paper::TABLE_2;
-use crate::study::{Study, StudyError};
+use pcc_compile::study::{Study, StudyError};
 
 /// Designs per sparse method, as in the paper.
 const DESIGNS: u64 = 5;

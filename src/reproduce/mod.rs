@@ -14,15 +14,15 @@ mod paper;
 pub use cases::MOST_INPUTS;
 pub use paper::{PaperRow, Range, TABLE_2};
 
-use crate::build::{BuildError, build};
-use crate::eval::{EvalError, Sensitivities, sensitivities};
-use crate::progress::{Interrupted, Observer};
-use crate::reference::{Comparison, ModelSample, ReferenceError};
-use crate::spectrum::Target;
-use crate::study::{Study, StudyError};
-use crate::surrogate::Surrogate;
 use cases::{Case, Expanded};
-use nalgebra::Complex;
+use num_complex::Complex;
+use pcc_compile::compilation::{BuildError, build};
+use pcc_compile::mechanics::spectrum::Target;
+use pcc_compile::reference::{Comparison, ModelSample, ReferenceError};
+use pcc_compile::study::{Study, StudyError};
+use pcc_evaluate::evaluation::{EvalError, Sensitivities, sensitivities};
+use pcc_evaluate::foundation::{Interrupted, Observer};
+use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::time::Instant;
 use thiserror::Error;
@@ -259,7 +259,7 @@ fn row(
     seconds: f64,
 ) -> Row {
     let counts = surrogate.training.counts;
-    let largest = |error: fn(&crate::reference::ComponentError) -> Option<f64>| {
+    let largest = |error: fn(&pcc_compile::reference::ComponentError) -> Option<f64>| {
         let of_pair = comparison.components.iter().filter(|component| component.name.starts_with("re_"));
         of_pair.map(error).try_fold(0.0, |largest: f64, error| error.map(|error| largest.max(error)))
     };

@@ -5,12 +5,13 @@ use super::super::recording::{self, journal_of_build};
 use super::super::run_arguments::Recording;
 use super::super::{Context, Ending};
 use super::{interruptible, keep_other_files, read_study};
-use crate::artifact::{Format, check_writable, encode, save};
-use crate::build::BuildError;
-use crate::design::Campaign;
 use crate::report::{BuildReport, FailedRun, RecordedRuns};
-use crate::study::Study;
-use crate::surrogate::Surrogate;
+use pcc_compile::campaign::Campaign;
+use pcc_compile::compilation::BuildError;
+use pcc_compile::study::Study;
+use pcc_evaluate::artifact::{Format, encode};
+use pcc_evaluate::foundation::{check_writable, save};
+use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ pub(super) fn build_to_file(
     let books = recording::open(context, study, recording, Some(journal_of_build(study, path)))?;
     let start = Instant::now();
     let campaign = Campaign { study, ledger: Some(&books.ledger) };
-    let surrogate = match crate::build::build(campaign, &context.terminal) {
+    let surrogate = match pcc_compile::compilation::build(campaign, &context.terminal) {
         Ok(surrogate) => surrogate,
         Err(error) => {
             if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {

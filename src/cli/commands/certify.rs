@@ -5,11 +5,12 @@ use super::super::recording::open_here;
 use super::super::{Context, Ending};
 use super::convert::refuse_lossy;
 use super::{interruptible, keep_other_files, read_study, read_surrogate};
-use crate::artifact::{Format, check_writable, encode, save};
-use crate::design::Campaign;
-use crate::reference::certify as certify_with_model;
 use crate::report::CertifyReport;
 use anyhow::bail;
+use pcc_compile::campaign::Campaign;
+use pcc_compile::reference::certify as certify_with_model;
+use pcc_evaluate::artifact::{Format, encode};
+use pcc_evaluate::foundation::{check_writable, save};
 use std::time::Instant;
 
 /// Confidence level of certificates.

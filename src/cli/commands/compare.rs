@@ -4,10 +4,10 @@ use super::super::arguments::Compare;
 use super::super::recording::open_here;
 use super::super::{Context, Ending, complain};
 use super::{interruptible, read_study, read_surrogate};
-use crate::design::Campaign;
-use crate::reference::compare as compare_with_model;
 use crate::report::CompareReport;
-use crate::surrogate::Surrogate;
+use pcc_compile::campaign::Campaign;
+use pcc_compile::reference::compare as compare_with_model;
+use pcc_evaluate::surrogate::Surrogate;
 use std::time::Instant;
 
 pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow::Result<Ending> {

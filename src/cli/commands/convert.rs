@@ -3,9 +3,10 @@
 use super::super::arguments::Convert;
 use super::super::{Context, Ending};
 use super::{keep_inputs, keep_other_files, read_surrogate};
-use crate::artifact::version::{Compatibility, compatibility};
-use crate::artifact::{Artifact, Format, encode, save};
 use anyhow::bail;
+use pcc_evaluate::artifact::version::{Compatibility, compatibility};
+use pcc_evaluate::artifact::{Artifact, Format, encode};
+use pcc_evaluate::foundation::save;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;

@@ -4,14 +4,14 @@ use super::super::recording::{journal_here, remark};
 use super::super::run_arguments::Design;
 use super::super::{Context, Ending};
 use super::{interruptible, keep_inputs, keep_results, read_study};
-use crate::artifact::{check_writable, save_with};
-use crate::build::{BuildError, build};
-use crate::design::{Asked, Campaign, Ledger, RunError};
-use crate::journal::{Contents, Journal};
-use crate::model::program::results_table::write_points;
 use crate::report::DesignReport;
-use crate::study::Study;
 use anyhow::bail;
+use pcc_compile::campaign::journal::{Contents, Journal};
+use pcc_compile::campaign::{Asked, Campaign, Ledger, RunError};
+use pcc_compile::compilation::{BuildError, build};
+use pcc_compile::mechanics::model::program::results_table::write_points;
+use pcc_compile::study::Study;
+use pcc_evaluate::foundation::{check_writable, save_with};
 use std::io;
 
 pub(in super::super) fn design(context: &Context, options: &Design) -> anyhow::Result<Ending> {

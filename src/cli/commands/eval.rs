@@ -5,17 +5,15 @@ use super::super::points::{Evaluated, PointsFile};
 use super::super::question::Shard;
 use super::super::{Context, Ending};
 use super::{PointsReport, interruptible, keep_inputs, keep_results, keep_unmarked_files, read_surrogate};
-use crate::artifact::{check_writable, save};
-use crate::eval::{
+use crate::report::{Asked, EvalReport, PartReport, SweepReport, sweep_chart};
+use anyhow::{Context as _, bail};
+use pcc_evaluate::evaluation::{
     Answer, EvalError, Findings, Pilot, PilotError, Plan, Progress, Quantity, Question, Sampler, Survey, SurveyError,
     critical_values_in, evaluate_points, sensitivities_in,
 };
-use crate::numerics::InstructionSet;
-use crate::part::{MARK, Part};
-use crate::progress::Interrupted;
-use crate::report::{Asked, EvalReport, PartReport, SweepReport, sweep_chart};
-use crate::surrogate::Surrogate;
-use anyhow::{Context as _, bail};
+use pcc_evaluate::foundation::{InstructionSet, Interrupted, check_writable, save};
+use pcc_evaluate::shard_file::{MARK, Part};
+use pcc_evaluate::surrogate::Surrogate;
 use std::path::Path;
 use std::time::Instant;
 

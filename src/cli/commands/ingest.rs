@@ -5,11 +5,11 @@ use super::super::run_arguments::Ingest;
 use super::super::{Context, Ending};
 use super::design::{Stage, refuse_derivatives, step};
 use super::read_study;
-use crate::design::{Ledger, RowProblem, harvest};
-use crate::journal::{Journal, Outcome};
-use crate::model::program::results_table::read_results;
 use crate::report::IngestReport;
 use anyhow::{Context as _, anyhow, bail};
+use pcc_compile::campaign::journal::{Journal, Outcome};
+use pcc_compile::campaign::{Ledger, RowProblem, harvest};
+use pcc_compile::mechanics::model::program::results_table::read_results;
 use std::fs::File;
 use std::path::Path;
 

@@ -4,11 +4,10 @@ use super::super::recording::remark;
 use super::super::run_arguments::ShowJournal;
 use super::super::{Context, Ending};
 use super::{keep_inputs, keep_results, read_study};
-use crate::artifact::save_with;
-use crate::digest::hexadecimal;
-use crate::journal::{Contents, Journal, Outcome, Record};
 use crate::report::{JournalModel, JournalReport};
 use anyhow::bail;
+use pcc_compile::campaign::journal::{Contents, Journal, Outcome, Record};
+use pcc_evaluate::foundation::{hexadecimal, save_with};
 use std::io::{self, Write};
 
 pub(in super::super) fn journal(context: &Context, options: &ShowJournal) -> anyhow::Result<Ending> {

@@ -4,10 +4,10 @@ use super::super::eval_arguments::Merge;
 use super::super::{Context, Ending};
 use super::eval::{check_pictures, present, stable};
 use super::{keep_inputs, keep_unmarked_files};
-use crate::artifact::{check_writable, save};
-use crate::part::{MARK, Part, PartError, merge as merge_parts};
 use crate::report::{Asked, MergeReport};
 use anyhow::Context as _;
+use pcc_evaluate::foundation::{check_writable, save};
+use pcc_evaluate::shard_file::{MARK, Part, PartError, merge as merge_parts};
 use std::path::Path;
 use std::time::Instant;
 

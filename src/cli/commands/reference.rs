@@ -5,9 +5,9 @@ use super::super::points::{Evaluated, PointsFile};
 use super::super::recording::open_here;
 use super::super::{Context, Ending};
 use super::{PointsReport, interruptible, keep_inputs, read_study};
-use crate::design::{Campaign, RunError, Runner};
-use crate::reference::monte_carlo;
 use crate::report::EvalReport;
+use pcc_compile::campaign::{Campaign, RunError, Runner};
+use pcc_compile::reference::monte_carlo;
 use std::path::Path;
 use std::time::Instant;
 

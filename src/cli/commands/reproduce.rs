@@ -3,10 +3,10 @@
 use super::super::arguments::{Part, Reproduce};
 use super::super::{Context, Ending, complain};
 use super::{REPRODUCTION_PAGE, interruptible, keep_unmarked_files};
-use crate::artifact::{check_writable, save};
 use crate::report::{figure_sheets, short_table_2};
 use crate::reproduce::{Options, Reproduction, Row};
 use anyhow::Context as _;
+use pcc_evaluate::foundation::{check_writable, save};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;

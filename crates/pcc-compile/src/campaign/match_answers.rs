@@ -1,0 +1,213 @@
+//! Answers that others computed: rows of a table become records of a journal.
+
+use super::ledger::{Asked, bits};
+use crate::campaign::journal::{HASH_BYTES, Outcome, Record};
+use crate::mechanics::model::program::results_table::ResultRow;
+use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError};
+use crate::study::Study;
+use nalgebra::Complex;
+use std::collections::HashMap;
+use thiserror::Error;
+
+/// Inputs of a numbered run may differ from the design's by this share of their interval: tables are written with fewer digits.
+const INPUT_TOLERANCE: f64 = 1e-4;
+
+/// Two answers to the same run may differ by this share of the largest eigenvalue: solvers on other machines round otherwise.
+const ANSWER_TOLERANCE: f64 = 1e-9;
+
+/// Why a row of results cannot be taken.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum RowProblem {
+    /// There is no such run.
+    #[error("line {line}: there is no run {run}; the design has asked for {asked} so far")]
+    NoSuchRun {
+        /// Line of the table.
+        line: u64,
+        /// Number of the run.
+        run: u64,
+        /// Runs of the design.
+        asked: usize,
+    },
+    /// The inputs are not those of the run.
+    #[error(
+        "line {line}: run {run} of the design is at {expected}, not at {found}; is the table of another study or seed?"
+    )]
+    OtherPoint {
+        /// Line of the table.
+        line: u64,
+        /// Number of the run.
+        run: u64,
+        /// The point of the design.
+        expected: String,
+        /// The point in the row.
+        found: String,
+    },
+    /// The row says where it belongs by a number alone.
+    #[error(
+        "line {line}: has the number of a run, but not its inputs; keep the columns of the inputs, so that an answer cannot get to the \
+         point of another study or seed"
+    )]
+    NoInputs {
+        /// Line of the table.
+        line: u64,
+    },
+    /// The model's answer has no modes.
+    #[error("line {line}: run {run}: {cause}")]
+    Spectrum {
+        /// Line of the table.
+        line: u64,
+        /// Number of the run.
+        run: u64,
+        /// Why.
+        cause: SpectrumError,
+    },
+    /// The inputs are no point of the design.
+    #[error(
+        "line {line}: {found} is no point that the design has asked for so far; keep all digits of the inputs, or the column run beside them"
+    )]
+    NoSuchPoint {
+        /// Line of the table.
+        line: u64,
+        /// The point in the row.
+        found: String,
+    },
+    /// Another answer is known.
+    #[error(
+        "line {line}: run {run} was answered otherwise before: eigenvalues differ by {difference:.1e} 1/s; remove the wrong \
+         one, or take this one in its place with --replace"
+    )]
+    Contradiction {
+        /// Line of the table.
+        line: u64,
+        /// Number of the run.
+        run: u64,
+        /// Largest difference of an eigenvalue.
+        difference: f64,
+    },
+}
+
+/// What a table of results brings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Harvest {
+    /// Runs that were not known.
+    pub records: Vec<Record>,
+    /// Rows that say what is known already.
+    pub repeated: usize,
+}
+
+/// Finds the run of each row among those `asked` for, in the order of the design, and what is new; `known` are the outcomes of these
+/// runs as far as there are any.
+///
+/// A row belongs to the run with its number, whose inputs it must have to four digits of its interval, or else to that with the bits of its inputs.
+/// Answers to a run that has failed are new; failures of a run that was answered are not. With `replaces`, an answer that
+/// contradicts an earlier one takes its place.
+///
+/// # Errors
+///
+/// All rows that cannot be taken; then none is.
+pub fn harvest(
+    study: &Study,
+    asked: &[Asked],
+    known: impl Fn(&[f64]) -> Option<Outcome>,
+    rows: &[ResultRow],
+    replaces: bool,
+) -> Result<Harvest, Vec<RowProblem>> {
+    let by_bits: HashMap<Vec<u64>, usize> = (0..asked.len()).map(|i| (bits(&asked[i].point), i)).collect();
+    let mut outcomes: HashMap<usize, Outcome> = HashMap::new();
+    let (mut harvest, mut problems) = (Harvest { records: Vec::new(), repeated: 0 }, Vec::new());
+    let model: [u8; HASH_BYTES] = study.model_hash();
+    for row in rows {
+        let i = match find(study, asked, &by_bits, row) {
+            Ok(i) => i,
+            Err(problem) => {
+                problems.push(problem);
+                continue;
+            }
+        };
+        let point = &asked[i].point;
+        let (line, run) = (row.line, i as u64 + 1);
+        let outcome = match &row.answer {
+            Ok(eigenvalues) => {
+                if let Err(cause) = usable(study, eigenvalues) {
+                    problems.push(RowProblem::Spectrum { line, run, cause });
+                    continue;
+                }
+                Outcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reduction: None })
+            }
+            Err(cause) => Outcome::Failed { attempts: 1, cause: cause.clone(), by_circumstances: false },
+        };
+        let before = outcomes.get(&i).cloned().or_else(|| known(point));
+        match (&before, &outcome) {
+            (Some(Outcome::Answered(before)), Outcome::Answered(now)) => {
+                let (difference, scale) = difference(&before.eigenvalues, &now.eigenvalues);
+                match (difference > ANSWER_TOLERANCE * scale, replaces) {
+                    (false, _) => harvest.repeated += 1,
+                    (true, false) => problems.push(RowProblem::Contradiction { line, run, difference }),
+                    (true, true) => {
+                        outcomes.insert(i, outcome.clone());
+                        harvest.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+                    }
+                }
+            }
+            (Some(Outcome::Answered(_)), Outcome::Failed { .. }) => harvest.repeated += 1,
+            (Some(before), now) if before == now => harvest.repeated += 1,
+            _ => {
+                outcomes.insert(i, outcome.clone());
+                harvest.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+            }
+        }
+    }
+    if problems.is_empty() { Ok(harvest) } else { Err(problems) }
+}
+
+/// The run a row belongs to.
+fn find(
+    study: &Study,
+    asked: &[Asked],
+    by_bits: &HashMap<Vec<u64>, usize>,
+    row: &ResultRow,
+) -> Result<usize, RowProblem> {
+    let (line, describe) = (row.line, |point: &[f64]| study.inputs.describe(point));
+    let Some(run) = row.run else {
+        let inputs = row.inputs.as_deref().unwrap_or_default();
+        let found = || RowProblem::NoSuchPoint { line, found: describe(inputs) };
+        return by_bits.get(&bits(inputs)).copied().ok_or_else(found);
+    };
+    let i = usize::try_from(run).ok().and_then(|run| run.checked_sub(1)).filter(|&i| i < asked.len());
+    let i = i.ok_or(RowProblem::NoSuchRun { line, run, asked: asked.len() })?;
+    let inputs = row.inputs.as_ref().ok_or(RowProblem::NoInputs { line })?;
+    match is_close(study, inputs, &asked[i].point) {
+        true => Ok(i),
+        false => {
+            let (expected, found) = (describe(&asked[i].point), describe(inputs));
+            Err(RowProblem::OtherPoint { line, run, expected, found })
+        }
+    }
+}
+
+/// Whether the study's modes are among these eigenvalues.
+fn usable(study: &Study, eigenvalues: &[Complex<f64>]) -> Result<(), SpectrumError> {
+    let spectrum = Spectrum::new(eigenvalues)?;
+    study.spectrum.modes.ranks(spectrum.count()).map(drop)
+}
+
+fn is_close(study: &Study, found: &[f64], expected: &[f64]) -> bool {
+    let inputs = study.inputs.inputs();
+    inputs.iter().zip(found).zip(expected).all(|((input, found), expected)| {
+        let width = input.marginal.physical(1.0) - input.marginal.physical(-1.0);
+        (found - expected).abs() <= INPUT_TOLERANCE * width
+    })
+}
+
+/// The largest difference between eigenvalues, whatever their order, and the largest |λ|.
+fn difference(a: &[Complex<f64>], b: &[Complex<f64>]) -> (f64, f64) {
+    let scale = a.iter().chain(b).map(|lambda| lambda.norm()).fold(0.0, f64::max);
+    let mut left: Vec<Complex<f64>> = b.to_vec();
+    let mut largest = if a.len() == b.len() { 0.0 } else { f64::INFINITY };
+    for lambda in a {
+        let nearest = (0..left.len()).min_by(|&i, &k| (left[i] - lambda).norm().total_cmp(&(left[k] - lambda).norm()));
+        let Some(nearest) = nearest else { break };
+        largest = (left.swap_remove(nearest) - lambda).norm().max(largest);
+    }
+    (largest, scale)
+}

@@ -1,0 +1,10 @@
+//! Model runs: which are asked for, which are known, how they are recorded, and what came of them.
+
+pub mod journal;
+mod ledger;
+mod match_answers;
+mod run;
+
+pub use ledger::{Asked, Campaign, Failure, Ledger};
+pub use match_answers::{Harvest, RowProblem, harvest};
+pub use run::{Run, RunError, Runner};

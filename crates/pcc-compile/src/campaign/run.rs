@@ -1,0 +1,367 @@
+//! Direct computations at points of the input space, with errors that name the point.
+
+use super::ledger::{Campaign, Ledger};
+use crate::campaign::journal::{JournalError, Outcome};
+use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
+use crate::mechanics::spectrum::{Computation, ReducedSystem, Reduction, Spectrum, SpectrumError};
+use crate::numerics::eigenvalues::SchurForm;
+use crate::study::Study;
+use nalgebra::Complex;
+use pcc_evaluate::foundation::{Interrupted, Observer, try_map, try_map_waiting};
+
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// Why a direct computation gave no spectrum. `point` lists the inputs with their values.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum RunError {
+    /// The model failed.
+    #[error("the model run at {point} failed: {cause}")]
+    Model {
+        /// Where.
+        point: String,
+        /// Why.
+        cause: ModelError,
+    },
+    /// Its eigenvalues cannot be sorted into modes, or a mode of `spectrum.modes` is missing.
+    #[error("spectrum.modes: {cause}; found at {point}")]
+    Spectrum {
+        /// Where.
+        point: String,
+        /// Why.
+        cause: SpectrumError,
+    },
+    /// Two runs found different numbers of oscillating modes, so ranks do not name the same modes.
+    #[error(
+        "{first_count} modes oscillate at {first_point}, but {count} at {point}; modes cannot be numbered by frequency \
+         over this input space: narrow the inputs"
+    )]
+    ModeCount {
+        /// A first point.
+        first_point: String,
+        /// Number of oscillating modes there.
+        first_count: usize,
+        /// A second point.
+        point: String,
+        /// Number of oscillating modes there.
+        count: usize,
+    },
+    /// Answers are missing, and the model is not to be run.
+    #[error(
+        "{missing} model runs of the design are not answered yet: write them to a table with pcc design STUDY --emit ROWS.csv, run \
+         them, and hand the answers over with pcc ingest STUDY RESULTS.csv"
+    )]
+    Unanswered {
+        /// Number of points without an answer.
+        missing: usize,
+    },
+    /// Runs could not be recorded.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The user asked to stop.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
+}
+
+/// One direct computation, seen as a study asks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// All modes.
+    pub spectrum: Spectrum,
+    /// Eigenvalues of the study's modes.
+    pub eigenvalues: Vec<Complex<f64>>,
+    /// The system with its derivatives, as the study's modes see it: if derivatives were asked for and the modes can be
+    /// separated from the rest of the spectrum.
+    pub reduced: Option<ReducedSystem>,
+}
+
+/// Runs the model of a study, and sees to it that all points have the same number of oscillating modes.
+pub struct Runner<'a> {
+    study: &'a Study,
+    ledger: Option<&'a Ledger>,
+    model: Box<dyn Model>,
+    with_derivatives: bool,
+    /// The first point, and how many modes oscillate there.
+    first: Option<(Vec<f64>, usize)>,
+    modes: Vec<usize>,
+}
+
+/// What is kept of a run until all are there.
+type Answer = (Spectrum, Option<ReducedSystem>);
+
+/// How a run ended: with an answer, or with a failure that is left out, and its cause.
+type Ending = Result<Answer, String>;
+
+impl<'a> Runner<'a> {
+    /// Sets up the model.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError`].
+    pub fn new(campaign: impl Into<Campaign<'a>>) -> Result<Self, ModelError> {
+        let campaign = campaign.into();
+        Ok(Self::of(campaign, campaign.study.model()?))
+    }
+
+    /// Runs `model` in place of the study's.
+    pub fn of(campaign: impl Into<Campaign<'a>>, model: Box<dyn Model>) -> Self {
+        let Campaign { study, ledger } = campaign.into();
+        Self { study, ledger, model, with_derivatives: false, first: None, modes: Vec::new() }
+    }
+
+    /// Asks the model for derivatives, too, if it has them.
+    #[must_use]
+    pub fn with_derivatives(self, wanted: bool) -> Self {
+        Self { with_derivatives: wanted && self.model.has_derivatives(), ..self }
+    }
+
+    /// Whether runs come with derivatives.
+    pub fn has_derivatives(&self) -> bool {
+        self.with_derivatives
+    }
+
+    /// Frequency ranks of the study's modes; empty before the first run.
+    pub fn modes(&self) -> &[usize] {
+        &self.modes
+    }
+
+    /// Direct computations at physical points, in parallel and in order. Those that the ledger knows are not run again.
+    ///
+    /// # Errors
+    ///
+    /// [`RunError`] names the first point that failed.
+    pub fn run(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Run>, RunError> {
+        let runs = self.run_with(points, false, observer)?;
+        // Nothing was skipped.
+        Ok(runs.into_iter().flatten().collect())
+    }
+
+    /// The same, but with nothing in place of runs that failed, if the study says that they are to be skipped.
+    ///
+    /// # Errors
+    ///
+    /// As [`Runner::run`].
+    pub fn run_some(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Option<Run>>, RunError> {
+        self.run_with(points, self.study.model.skips_failures(), observer)
+    }
+
+    fn run_with(
+        &mut self,
+        points: &[Vec<f64>],
+        skips: bool,
+        observer: &dyn Observer,
+    ) -> Result<Vec<Option<Run>>, RunError> {
+        let known = points.iter().map(|point| self.known(point, skips)).collect::<Result<Vec<_>, _>>()?;
+        // Answers that others gave are wrong before the last one is there.
+        for (point, known) in points.iter().zip(&known) {
+            if let Some(Ok((spectrum, _))) = known {
+                self.check_mode_count(point, spectrum.count())?;
+            }
+        }
+        let answers = self.complete(points, known, skips, observer)?;
+        // Every point first: where the number of modes changes, a missing mode is the lesser news.
+        for (point, answer) in points.iter().zip(&answers) {
+            if let Some((spectrum, _)) = answer {
+                self.check_mode_count(point, spectrum.count())?;
+            }
+        }
+        let select = |(point, answer): (&Vec<f64>, Option<Answer>)| {
+            answer.map(|(spectrum, reduced)| self.select(point, spectrum, reduced)).transpose()
+        };
+        points.iter().zip(answers).map(select).collect()
+    }
+
+    /// The answers that are known, and those of the model at the other points.
+    fn complete(
+        &self,
+        points: &[Vec<f64>],
+        known: Vec<Option<Ending>>,
+        skips: bool,
+        observer: &dyn Observer,
+    ) -> Result<Vec<Option<Answer>>, RunError> {
+        let missing: Vec<usize> = (0..points.len()).filter(|&i| known[i].is_none()).collect();
+        if let Some(ledger) = self.ledger {
+            ledger.note(points, |i| known[i].is_some());
+            if !ledger.may_run() && !missing.is_empty() {
+                return Err(RunError::Unanswered { missing: missing.len() });
+            }
+        }
+        observer.advance((points.len() - missing.len()) as u64);
+        let missing_points: Vec<&Vec<f64>> = missing.iter().map(|&i| &points[i]).collect();
+        let found = self.run_model(&missing_points, skips, observer);
+        if let Some(ledger) = self.ledger {
+            // Runs that ended before another failed count as well.
+            ledger.sync()?;
+        }
+        let mut found = found?.into_iter();
+        let endings = known.into_iter().zip(points).filter_map(|(known, point)| {
+            let ending = known.or_else(|| found.next())?;
+            if let (Some(ledger), Err(cause)) = (self.ledger, &ending) {
+                ledger.note_failure(point, cause.clone());
+            }
+            Some(ending.ok())
+        });
+        Ok(endings.collect())
+    }
+
+    /// What the ledger knows of a point, if that is enough: an answer, or a failure that may be left out.
+    fn known(&self, point: &[f64], skips: bool) -> Result<Option<Ending>, RunError> {
+        let Some(ledger) = self.ledger else { return Ok(None) };
+        match ledger.find(point) {
+            Some(Outcome::Answered(computation)) if self.suffices(computation) => {
+                self.answer(point, computation.clone()).map(|answer| Some(Ok(answer)))
+            }
+            Some(Outcome::Failed { cause, by_circumstances, .. }) if skips && ledger.may_skip(*by_circumstances) => {
+                Ok(Some(Err(cause.clone())))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether a recorded answer has the derivatives that are wanted, for the modes that are wanted.
+    fn suffices(&self, computation: &Computation) -> bool {
+        let modes = || {
+            let spectrum = Spectrum::new(&computation.eigenvalues).ok()?;
+            self.study.spectrum.modes.ranks(spectrum.count()).ok()
+        };
+        let has_them = |modes: &Vec<usize>| computation.reduction.as_ref().is_some_and(|found| found.modes() == modes);
+        // Without the modes there is nothing to reduce to; that is reported later.
+        !self.with_derivatives || modes().as_ref().is_none_or(has_them)
+    }
+
+    fn run_model(&self, points: &[&Vec<f64>], skips: bool, observer: &dyn Observer) -> Result<Vec<Ending>, RunError> {
+        let watch = || {
+            if observer.interrupted() {
+                self.model.interrupt();
+            }
+        };
+        let run = |point: &Vec<f64>, records_at_once: bool| {
+            observer.check()?;
+            let start = Instant::now();
+            let result = self.direct_computation(point);
+            self.settle(point, result, start.elapsed(), records_at_once, skips, observer)
+        };
+        match self.model.concurrency() {
+            Concurrency::Threads => try_map(points.len(), |k| run(points[k], false)),
+            Concurrency::Jobs(jobs) => try_map_waiting(jobs, points.len(), watch, |k| run(points[k], true)),
+            Concurrency::Together if points.is_empty() => Ok(Vec::new()),
+            Concurrency::Together => {
+                let all = |_| self.run_together(points, skips, observer);
+                try_map_waiting(1, 1, watch, all).map(|answers| answers.into_iter().flatten().collect())
+            }
+        }
+    }
+
+    fn run_together(
+        &self,
+        points: &[&Vec<f64>],
+        skips: bool,
+        observer: &dyn Observer,
+    ) -> Result<Vec<Ending>, RunError> {
+        observer.check()?;
+        let start = Instant::now();
+        let owned: Vec<Vec<f64>> = points.iter().map(|&point| point.clone()).collect();
+        let results = self.model.eigenvalues_together(&owned);
+        let each = start.elapsed().div_f64(points.len() as f64);
+        // All are recorded before the first failure ends the build.
+        let settled: Vec<_> = results
+            .into_iter()
+            .zip(points)
+            .map(|(result, point)| {
+                let computation = result.map(|eigenvalues| Computation { eigenvalues, reduction: None });
+                self.settle(point, computation, each, false, skips, observer)
+            })
+            .collect();
+        settled.into_iter().collect()
+    }
+
+    /// Records how a run ended.
+    fn settle(
+        &self,
+        point: &[f64],
+        result: Result<Computation, ModelError>,
+        duration: Duration,
+        at_once: bool,
+        skips: bool,
+        observer: &dyn Observer,
+    ) -> Result<Ending, RunError> {
+        let outcome = || match &result {
+            Ok(computation) => Outcome::Answered(computation.clone()),
+            Err(cause) => Outcome::Failed {
+                attempts: cause.attempts(),
+                cause: cause.to_string(),
+                by_circumstances: cause.is_by_circumstances(),
+            },
+        };
+        // A run that was stopped, or could not even be started, did not fail.
+        let has_run = result.as_ref().err().is_none_or(|cause| cause.is_of_run());
+        if result.is_err() && observer.interrupted() {
+            return Err(Interrupted.into());
+        }
+        if let Some(ledger) = self.ledger.filter(|_| has_run) {
+            ledger.record(point, outcome, duration, at_once)?;
+        }
+        observer.advance(1);
+        match result {
+            Ok(computation) => self.answer(point, computation).map(Ok),
+            Err(cause) if skips && has_run => Ok(Err(cause.to_string())),
+            Err(cause) => Err(RunError::Model { point: self.study.inputs.describe(point), cause }),
+        }
+    }
+
+    fn answer(&self, point: &[f64], computation: Computation) -> Result<Answer, RunError> {
+        let Computation { eigenvalues, reduction } = computation;
+        let spectrum = Spectrum::new(&eigenvalues)
+            .map_err(|cause| RunError::Spectrum { point: self.study.inputs.describe(point), cause })?;
+        let reduced = match reduction {
+            Some(Reduction::Reduced(system)) if self.with_derivatives => Some(system),
+            _ => None,
+        };
+        Ok((spectrum, reduced))
+    }
+
+    fn direct_computation(&self, point: &[f64]) -> Result<Computation, ModelError> {
+        let linearization = if self.with_derivatives { self.model.linearization(point)? } else { None };
+        let Some(Linearization { state_matrix, derivatives }) = linearization else {
+            return Ok(Computation { eigenvalues: self.model.eigenvalues(point)?, reduction: None });
+        };
+        let expected = self.study.inputs.dimension();
+        let found = derivatives.iter().filter(|derivative| derivative.shape() == state_matrix.shape()).count();
+        if (found, derivatives.len()) != (expected, expected) {
+            return Err(ModelError::Derivatives { found, expected });
+        }
+        let schur = SchurForm::new(state_matrix)?;
+        let eigenvalues = schur.eigenvalues();
+        // What is wrong with a spectrum or its modes is reported once all runs are there.
+        let reduce = |spectrum: Spectrum| {
+            let modes = self.study.spectrum.modes.ranks(spectrum.count()).ok()?;
+            let reduced = ReducedSystem::new(&schur, &derivatives, &spectrum, &modes);
+            Some(reduced.map_or(Reduction::Inseparable(modes), Reduction::Reduced))
+        };
+        let reduction = Spectrum::new(&eigenvalues).ok().and_then(reduce);
+        Ok(Computation { eigenvalues, reduction })
+    }
+
+    fn check_mode_count(&mut self, point: &[f64], count: usize) -> Result<(), RunError> {
+        let inputs = &self.study.inputs;
+        let (first_point, first_count) = self.first.get_or_insert_with(|| (point.to_vec(), count));
+        if *first_count == count {
+            return Ok(());
+        }
+        Err(RunError::ModeCount {
+            first_point: inputs.describe(first_point),
+            first_count: *first_count,
+            point: inputs.describe(point),
+            count,
+        })
+    }
+
+    /// What the study asks of a spectrum.
+    fn select(&mut self, point: &[f64], spectrum: Spectrum, reduced: Option<ReducedSystem>) -> Result<Run, RunError> {
+        let Study { inputs, spectrum: asked, .. } = self.study;
+        let unusable = |cause| RunError::Spectrum { point: inputs.describe(point), cause };
+        self.modes = asked.modes.ranks(spectrum.count()).map_err(unusable)?;
+        let eigenvalues = self.modes.iter().map(|&mode| spectrum.mode(mode)).collect::<Result<_, _>>();
+        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum, reduced })
+    }
+}

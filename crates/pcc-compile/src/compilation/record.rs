@@ -1,0 +1,195 @@
+//! From fitted components to a surrogate that carries its own history.
+
+use super::components::ComponentResult;
+use super::evaluations::Evaluations;
+use crate::fitting::design::NestedLatinHypercube;
+use crate::fitting::fit::{Fitted, Stop};
+use crate::fitting::regression::Gradients;
+use crate::study::{FitMethod, FullExpansion, MultiElement, Solver, Study};
+use pcc_evaluate::components::{Component, Output};
+use pcc_evaluate::polynomials::Mesh;
+use pcc_evaluate::surrogate::{
+    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, StopReason, Surrogate, Training,
+};
+
+fn setting(key: &str, value: SettingValue) -> Setting {
+    Setting { key: key.to_owned(), value }
+}
+
+fn number(key: &str, value: f64) -> Setting {
+    setting(key, SettingValue::Number(value))
+}
+
+/// Points of the self-test.
+const SELF_TEST_POINTS: usize = 16;
+
+/// The self-test has the same points in every surrogate of the same dimension.
+const SELF_TEST_SEED: u64 = 0;
+
+/// The surrogate of a mesh, not yet judged: `fitted` has one fit per component for every element.
+pub(super) fn of_elements(
+    study: &Study,
+    mesh: Mesh,
+    outputs: Vec<Output>,
+    fitted: &[Vec<Fitted>],
+    counts: Counts,
+    levels: Vec<u64>,
+) -> Surrogate {
+    let method = &study.fit.method;
+    let training = Training {
+        method: method.name().to_owned(),
+        settings: settings_of(method),
+        design: study.design.kind.name().to_owned(),
+        seed: study.seed,
+        levels,
+        counts,
+    };
+    new(study, mesh, outputs, fitted.iter().flatten(), training)
+}
+
+/// The surrogate of one level, not yet judged.
+pub(super) fn surrogate(
+    study: &Study,
+    evaluations: &Evaluations<'_>,
+    outputs: Vec<Output>,
+    fitted: &[ComponentResult],
+    gradients: Option<&[Gradients]>,
+    levels: &[u64],
+) -> Surrogate {
+    let runs = (evaluations.runs().len(), evaluations.failed() as u64);
+    let training = training(study, fitted, gradients, runs, levels.to_vec());
+    let whole = Mesh::whole(study.inputs.dimension());
+    new(study, whole, outputs, fitted.iter().map(|fit| &fit.result), training)
+}
+
+fn new<'a>(
+    study: &Study,
+    mesh: Mesh,
+    outputs: Vec<Output>,
+    fitted: impl Iterator<Item = &'a Fitted>,
+    training: Training,
+) -> Surrogate {
+    let mut components: Vec<&Component> = outputs.iter().flat_map(|output| &output.components).collect();
+    components.sort_by_key(|component| component.id);
+    Surrogate {
+        provenance: Provenance {
+            tool_version: env!("CARGO_PKG_VERSION").to_owned(),
+            study_name: study.name.clone(),
+            problem_hash: study.problem_hash(),
+            study_hash: study.study_hash(),
+        },
+        inputs: study.inputs.clone(),
+        mesh,
+        expansions: fitted
+            .zip(components.into_iter().cycle())
+            .map(|(fit, component)| expansion(fit, component))
+            .collect(),
+        outputs,
+        training,
+        decision: Decision::default(),
+        self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
+        certificates: Vec::new(),
+    }
+}
+
+fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
+    Expansion {
+        indices: fitted.indices.clone(),
+        coefficients: fitted.coefficients.iter().map(|coefficient| coefficient / component.scale).collect(),
+        r2: fitted.errors.map(|errors| errors.r2),
+        s2: fitted.errors.and_then(|errors| errors.s2),
+        corrected_s2: fitted.errors.and_then(|errors| errors.corrected_s2),
+        leave_out: if fitted.derivative_weight.is_some() { LeaveOut::Run } else { LeaveOut::Row },
+        degree: fitted.degree,
+        stop: match fitted.stop {
+            Stop::Accurate => StopReason::Accurate,
+            Stop::HighestDegree => StopReason::HighestDegree,
+            Stop::DesignExhausted => StopReason::DesignExhausted,
+            Stop::Constant => StopReason::Constant,
+            Stop::GivenDegree => StopReason::GivenDegree,
+            Stop::Settled => StopReason::Settled,
+            Stop::Limited => StopReason::Limited,
+        },
+    }
+}
+
+fn training(
+    study: &Study,
+    fitted: &[ComponentResult],
+    gradients: Option<&[Gradients]>,
+    (runs, failed): (usize, u64),
+    levels: Vec<u64>,
+) -> Training {
+    let method = &study.fit.method;
+    let mut settings = settings_of(method);
+    if let Some(tolerance) = study.fit.proportion_tolerance {
+        settings.push(number("proportion_tolerance", tolerance));
+    }
+    if let FitMethod::Auto(_) = method {
+        let solvers: Vec<String> = fitted.iter().map(|fit| fit.solver.to_owned()).collect();
+        settings.push(setting("chosen", SettingValue::Text(summary_of(&solvers))));
+    }
+    // Runs whose derivatives entered the fit of every component that takes any.
+    let with_gradients = |i: usize| gradients.is_some_and(|all| all.iter().all(|one| one.points.contains(&i)));
+    if gradients.is_some() {
+        let weights = fitted.iter().map(|fit| fit.result.derivative_weight.map_or("-".to_owned(), |w| w.to_string()));
+        settings.push(setting("derivatives", SettingValue::Flag(true)));
+        settings.push(setting("derivative_weights", SettingValue::Text(summary_of(&weights.collect::<Vec<_>>()))));
+    }
+    let gradients = (0..runs).filter(|&i| with_gradients(i)).count() as u64;
+    let runs = runs as u64;
+    Training {
+        method: method.name().to_owned(),
+        settings,
+        design: study.design.kind.name().to_owned(),
+        seed: study.seed,
+        levels,
+        counts: Counts { values: runs, gradients, failed, final_mesh: runs, direct_computations: runs + failed },
+    }
+}
+
+/// The settings of a method as they are in a study.
+fn settings_of(method: &FitMethod) -> Vec<Setting> {
+    let mut settings = vec![setting("max_degree", SettingValue::Integer(method.max_degree().into()))];
+    if let FitMethod::Stepwise(stepwise) = method {
+        settings.push(number("q_norm", stepwise.q_norm));
+    }
+    if let Some(s2_target) = method.s2_target() {
+        settings.push(number("s2_target", s2_target));
+    }
+    match method {
+        FitMethod::Gpc(FullExpansion { solver: Solver::Quadrature, .. }) => {
+            settings.push(setting("solver", SettingValue::Text("quadrature".to_owned())));
+        }
+        FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { oversampling }, .. }) => {
+            settings.push(setting("solver", SettingValue::Text("least-squares".to_owned())));
+            settings.push(number("oversampling", *oversampling));
+        }
+        FitMethod::MultiElement(MultiElement { theta_1, theta_2, gamma, elements, .. }) => {
+            settings.extend([number("theta_1", *theta_1), number("theta_2", *theta_2), number("gamma", *gamma)]);
+            settings.push(setting("elements", SettingValue::Integer(*elements as u64)));
+        }
+        _ => {}
+    }
+    if let FitMethod::Stepwise(stepwise) = method {
+        settings.push(number("epsilon_forward", stepwise.epsilon_forward));
+        settings.push(number("epsilon_backward", stepwise.epsilon_backward));
+    }
+    settings
+}
+
+/// One name if all are equal, else all in the order of the components.
+fn summary_of(words: &[String]) -> String {
+    match words {
+        [first, rest @ ..] if rest.iter().all(|word| word == first) => first.clone(),
+        _ => words.join(" "),
+    }
+}
+
+pub(super) fn self_test_points(study: &Study) -> Vec<Vec<f64>> {
+    let mut design = NestedLatinHypercube::new(study.inputs.dimension(), SELF_TEST_SEED);
+    design.grow_to(SELF_TEST_POINTS);
+    let inputs = study.inputs.inputs();
+    let samples = design.samples(|j, unit| inputs[j].marginal.standardized_quantile(unit));
+    samples.points().map(|point| study.inputs.physical(point)).collect()
+}

@@ -1,0 +1,61 @@
+//! The better of two fits, component by component.
+//!
+//! The weighted minimum-norm fit suits functions that depend smoothly on most inputs, matching pursuit those that have
+//! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by folds,
+//! because its leave-one-out error does not see the selection of terms.
+
+use super::minimum_norm::Learnt;
+use super::omp::Candidates;
+use super::{Fitted, minimum_norm, omp};
+use crate::fitting::regression::{BasisTables, Response};
+use crate::study::Smooth;
+use pcc_evaluate::foundation::{Interrupted, Observer};
+
+/// Pursuit is given up for larger designs once its mean square error is so many times that of the other fit.
+const HOPELESS: f64 = 4.0;
+
+/// Fewer values and derivatives say little of either.
+const ENOUGH_EQUATIONS: usize = 20;
+
+/// What the fit of a component on one design passes on to the next larger one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Memory {
+    /// What the minimum-norm fit learnt.
+    pub learnt: Learnt,
+    /// Whether pursuit is still worth trying.
+    pub tries_pursuit: bool,
+}
+
+impl Memory {
+    /// Before the first design.
+    pub fn new(inputs: usize) -> Self {
+        Self { learnt: Learnt::nothing(inputs), tries_pursuit: true }
+    }
+}
+
+/// Fits one component: `response.values[i]` belongs to point i of `tables`. Returns the fit, the name of its method, and
+/// what the next design starts from.
+///
+/// # Errors
+///
+/// [`Interrupted`] soon after the observer asks to stop.
+pub fn fit(
+    tables: &BasisTables,
+    response: Response<'_>,
+    candidates: &Candidates,
+    settings: &Smooth,
+    memory: &Memory,
+    observer: &dyn Observer,
+) -> Result<(Fitted, &'static str, Memory), Interrupted> {
+    let (smooth, learnt) = minimum_norm::fit(tables, response, settings, &memory.learnt, observer)?;
+    let mut memory = Memory { learnt, ..*memory };
+    if !memory.tries_pursuit || smooth.errors.is_none() {
+        return Ok((smooth, "minimum-norm", memory));
+    }
+    let pursued = omp::fit(tables, response, candidates, settings, observer)?;
+    let error = |fitted: &Fitted| 1.0 - fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY);
+    let is_enough = response.equations(tables.inputs()).rows() >= ENOUGH_EQUATIONS;
+    let is_hopeless = error(&pursued) >= HOPELESS * error(&smooth) && is_enough;
+    memory.tries_pursuit = !is_hopeless;
+    if error(&pursued) < error(&smooth) { Ok((pursued, "omp", memory)) } else { Ok((smooth, "minimum-norm", memory)) }
+}

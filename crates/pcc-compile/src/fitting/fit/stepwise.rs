@@ -1,0 +1,357 @@
+//! Stepwise construction of a sparse polynomial chaos basis.
+//!
+//! Kieu, Bergeot and Berger (2017), section 3.3.3, after Blatman and Sudret (2010),
+//! <https://doi.org/10.1016/j.probengmech.2009.10.003>.
+//!
+//! Degree by degree, every candidate multi-index with p − 1 < ‖α‖_q ≤ p is tried alone on the set accepted at degree
+//! p − 1 and kept if it raises R² by at least ε₁ (forward step). Then every term with ‖α‖_q ≤ p − 1 but {0} is tried
+//! alone for removal and dropped if that lowers R² by less than ε₂ (backward step). If then N < 2 card(A), the design
+//! must grow and the search starts again from {0} (step 4). The search ends when the leave-one-out S² reaches its target
+//! or at the highest degree (step 5).
+//!
+//! One case the paper leaves open: if the forward step accepts as many terms as there are points, least squares has no
+//! unique solution and no backward step can be taken; this counts as a failed size test.
+//!
+//! With derivatives each run gives several equations, and counting says little: values and derivatives at few points can
+//! be dependent (Alexander and Hirschowitz 1995). N < 2 card(A) says that the mean leverage of a value is above ½; this is what
+//! is tested then, with runs left out as a whole ([`ActiveBasis::mean_leverage`]), and terms that depend on others fail the test,
+//! too. R² of the two steps is that of all equations, S² that of the values. The search is made for several weights of the
+//! derivatives; the one with the best S² counts.
+
+use std::collections::HashSet;
+
+use super::{Fitted, Stop, WEIGHTS};
+use crate::fitting::regression::{ActiveBasis, BasisTables, Response};
+use crate::study::Stepwise;
+use pcc_evaluate::foundation::{Interrupted, Observer};
+use pcc_evaluate::polynomials::MultiIndex;
+
+/// Mean leverage of a value beyond which there are too few points: P/N for N < 2 card(A) (step 4 of the paper).
+const LARGEST_LEVERAGE: f64 = 0.5;
+
+/// What came of a fit on one design.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// The search ended.
+    Fitted(Fitted),
+    /// The design is too small for the terms that matter.
+    TooFewSamples {
+        /// The terms of the last degree that passed the size test: what [`settle`] fits if the design cannot grow.
+        indices: Vec<MultiIndex>,
+        /// That degree.
+        degree: u16,
+    },
+}
+
+/// Fits one component.
+///
+/// `response.values[i]` is the component at point i of `tables`, in its own unit. `shells[p]` holds the candidates with
+/// p − 1 < ‖α‖_q ≤ p, as [`pcc_evaluate::polynomials::Hyperbolic::shells`] gives them for `settings.q_norm` and
+/// `settings.max_degree`.
+///
+/// # Errors
+///
+/// [`Interrupted`] soon after the observer asks to stop.
+///
+/// # Examples
+///
+/// ```
+/// use pcc_compile::fitting::design::NestedLatinHypercube;
+/// use pcc_compile::fitting::fit::stepwise::{fit, Outcome};
+/// use pcc_evaluate::polynomials::{Hyperbolic, Family};
+/// use pcc_evaluate::foundation::Silent;
+/// use pcc_compile::fitting::regression::{BasisTables, Response};
+/// use pcc_compile::study::Stepwise;
+///
+/// let settings = Stepwise {
+///     max_degree: 8, q_norm: 1.0, s2_target: 0.9999, epsilon_forward: 1e-6, epsilon_backward: 1e-6,
+/// };
+/// let mut design = NestedLatinHypercube::new(2, 1);
+/// design.grow_to(60);
+/// let samples = design.samples(|_, u| 2.0 * u - 1.0);
+/// let values: Vec<f64> = samples.points().map(|x| 1.0 + x[0] * x[1]).collect();
+/// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(8); 2], 8);
+/// let shells = Hyperbolic { inputs: 2, q_norm: 1.0 }.shells(8)?;
+/// let response = Response::of(&values, 1e-13);
+/// let outcome = fit(&tables, response, &shells, &settings, &Silent)?;
+/// assert!(matches!(outcome, Outcome::Fitted(fitted) if fitted.errors.unwrap().r2 > 0.9999));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn fit(
+    tables: &BasisTables,
+    response: Response<'_>,
+    shells: &[Vec<MultiIndex>],
+    settings: &Stepwise,
+    observer: &dyn Observer,
+) -> Result<Outcome, Interrupted> {
+    let Some(variance) = response.variance() else {
+        return Ok(Outcome::Fitted(Fitted::constant(tables.inputs(), response.values)));
+    };
+    if response.gradients.is_none() {
+        return search(tables, response, variance, 0.0, shells, settings, observer);
+    }
+    let (mut best, mut wants_points): (Option<(f64, Outcome)>, bool) = (None, false);
+    for weight in WEIGHTS {
+        let outcome = search(tables, response.with_weight(weight), variance, weight, shells, settings, observer)?;
+        let s2 = match &outcome {
+            // A design that is too small for full weight is not made large enough by a poor fit with less.
+            Outcome::Fitted(fitted) if best.is_some() && wants_points && fitted.stop != Stop::Accurate => continue,
+            Outcome::Fitted(fitted) => fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY),
+            Outcome::TooFewSamples { .. } => f64::NEG_INFINITY,
+        };
+        wants_points |= best.is_none() && matches!(outcome, Outcome::TooFewSamples { .. });
+        if best.as_ref().is_none_or(|(known, _)| s2 > *known) {
+            best = Some((s2, weighed(outcome, weight)));
+        }
+    }
+    Ok(best.map(|(_, outcome)| outcome).expect("there are weights"))
+}
+
+fn weighed(outcome: Outcome, weight: f64) -> Outcome {
+    match outcome {
+        Outcome::Fitted(fitted) => Outcome::Fitted(Fitted { derivative_weight: Some(weight), ..fitted }),
+        too_few => too_few,
+    }
+}
+
+/// The search with one weight of the derivatives.
+fn search(
+    tables: &BasisTables,
+    response: Response<'_>,
+    variance: f64,
+    weight: f64,
+    shells: &[Vec<MultiIndex>],
+    settings: &Stepwise,
+    observer: &dyn Observer,
+) -> Result<Outcome, Interrupted> {
+    let mut basis = ActiveBasis::constant(tables, response, variance, weight, observer)?; // step 2: A = {0}
+    for degree in 1..=settings.max_degree {
+        let before = basis.indices().to_vec();
+        let candidates = &shells[usize::from(degree)];
+        let is_determined = forward_step(&mut basis, candidates, settings.epsilon_forward)?;
+        if is_determined {
+            backward_step(&mut basis, candidates, settings.epsilon_backward)?;
+        }
+        if !is_determined || basis.mean_leverage() > LARGEST_LEVERAGE {
+            return Ok(Outcome::TooFewSamples { indices: before, degree: degree - 1 }); // step 4
+        }
+        if basis.s2().is_some_and(|s2| s2 >= settings.s2_target) {
+            return Ok(Outcome::Fitted(Fitted::new(&basis, degree, Stop::Accurate)?)); // step 5
+        }
+    }
+    Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)?))
+}
+
+/// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for; derivatives have full weight,
+/// with which the search that gave the terms began.
+///
+/// # Errors
+///
+/// [`Interrupted`] soon after the observer asks to stop.
+pub fn settle(
+    tables: &BasisTables,
+    response: Response<'_>,
+    indices: &[MultiIndex],
+    degree: u16,
+    observer: &dyn Observer,
+) -> Result<Fitted, Interrupted> {
+    let Some(variance) = response.variance() else {
+        return Ok(Fitted::constant(tables.inputs(), response.values));
+    };
+    let mut basis = ActiveBasis::constant(tables, response, variance, 1.0, observer)?;
+    basis.extend(indices[1..].to_vec())?;
+    let fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    Ok(Fitted { derivative_weight: response.gradients.map(|_| 1.0), ..fitted })
+}
+
+/// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as equations, adds
+/// nothing and returns false; so it does if terms depend on each other beside derivatives.
+fn forward_step(basis: &mut ActiveBasis<'_>, candidates: &[MultiIndex], epsilon: f64) -> Result<bool, Interrupted> {
+    let gains = basis.gains(candidates)?;
+    let significant = candidates.iter().zip(gains).filter(|&(_, gain)| gain > 0.0 && gain >= epsilon);
+    let significant: Vec<MultiIndex> = significant.map(|(alpha, _)| alpha.clone()).collect();
+    let expected = basis.indices().len() + significant.len();
+    if expected >= basis.rows() {
+        return Ok(false);
+    }
+    basis.extend(significant)?;
+    Ok(basis.indices().len() == expected || basis.rows() == basis.samples())
+}
+
+/// Drops the terms of lower degree, never {0}, that each alone lower R² by less than `epsilon`.
+fn backward_step(basis: &mut ActiveBasis<'_>, of_this_degree: &[MultiIndex], epsilon: f64) -> Result<(), Interrupted> {
+    let losses = basis.losses()?;
+    let protected: HashSet<&MultiIndex> = of_this_degree.iter().collect();
+    basis.retain(|k, alpha| alpha.is_constant() || protected.contains(alpha) || losses[k] >= epsilon)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fitting::design::{NestedLatinHypercube, Samples};
+    use pcc_evaluate::foundation::Silent;
+    use pcc_evaluate::polynomials::{Family, Hyperbolic};
+
+    const DEGREE: u16 = 8;
+
+    struct Problem {
+        samples: Samples,
+        tables: BasisTables,
+        shells: Vec<Vec<MultiIndex>>,
+    }
+
+    fn problem(points: usize, q_norm: f64) -> Problem {
+        let mut design = NestedLatinHypercube::new(2, 3);
+        design.grow_to(points);
+        let samples = design.samples(|_, u| 2.0 * u - 1.0);
+        let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); 2];
+        let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
+        Problem { samples, tables, shells: Hyperbolic { inputs: 2, q_norm }.shells(DEGREE).unwrap() }
+    }
+
+    impl Problem {
+        /// Values of an expansion with these terms.
+        fn values(&self, terms: &[([u16; 2], f64)]) -> Vec<f64> {
+            let indices: Vec<MultiIndex> = terms.iter().map(|(alpha, _)| MultiIndex::new(alpha.to_vec())).collect();
+            let columns = self.tables.columns(&indices);
+            (0..self.samples.len())
+                .map(|i| terms.iter().enumerate().map(|(k, (_, c))| c * columns[(i, k)]).sum())
+                .collect()
+        }
+
+        fn fit(&self, values: &[f64], settings: &Stepwise) -> Outcome {
+            fit(&self.tables, Response::of(values, 1e-13), &self.shells, settings, &Silent).unwrap()
+        }
+    }
+
+    fn settings(q_norm: f64, s2_target: f64) -> Stepwise {
+        Stepwise { max_degree: DEGREE, q_norm, s2_target, epsilon_forward: 1e-6, epsilon_backward: 1e-6 }
+    }
+
+    fn fitted(outcome: Outcome) -> Fitted {
+        match outcome {
+            Outcome::Fitted(fitted) => fitted,
+            Outcome::TooFewSamples { .. } => panic!("the design suffices"),
+        }
+    }
+
+    #[test]
+    fn a_sparse_polynomial_is_found_exactly_and_the_search_ends_at_its_degree() {
+        let problem = problem(60, 1.0);
+        let terms = [([0, 0], 3.0), ([1, 0], 2.0), ([0, 2], -1.0), ([2, 1], 0.5)];
+        let found = fitted(problem.fit(&problem.values(&terms), &settings(1.0, 0.999_999)));
+        assert_eq!((found.degree, found.stop), (3, Stop::Accurate));
+        for (alpha, coefficient) in terms {
+            let at = found.indices.iter().position(|index| **index == alpha).unwrap();
+            assert!((found.coefficients[at] - coefficient).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn candidates_of_a_shell_are_tested_against_the_set_before_it() {
+        // On a finite design terms of one shell correlate; each is still judged alone, so their order plays no part.
+        let problem = problem(40, 1.0);
+        let values = problem.values(&[([0, 0], 1.0), ([3, 0], 1.0), ([2, 1], 1.0)]);
+        let one_degree = Stepwise { max_degree: 3, epsilon_forward: 1e-3, epsilon_backward: 0.0, ..settings(1.0, 1.0) };
+        let found = fitted(problem.fit(&values, &one_degree));
+        let mut basis = {
+            let response = Response::of(&values, 0.0);
+            ActiveBasis::constant(&problem.tables, response, response.variance().unwrap(), 1.0, &Silent)
+        }
+        .unwrap();
+        for shell in &problem.shells[1..=3] {
+            let gains = basis.gains(shell).unwrap();
+            let kept: Vec<_> =
+                shell.iter().zip(gains).filter(|&(_, gain)| gain >= 1e-3).map(|(alpha, _)| alpha.clone()).collect();
+            basis.extend(kept).unwrap();
+        }
+        let mut expected = basis.indices().to_vec();
+        expected.sort();
+        assert_eq!(found.indices[..], expected);
+    }
+
+    #[test]
+    fn backward_step_drops_lower_degrees_only_and_never_the_constant() {
+        let problem = problem(40, 1.0);
+        let values = problem.values(&[([2, 0], 1.0)]);
+        let variance = Response::of(&values, 0.0).variance().unwrap();
+        let mut basis =
+            ActiveBasis::constant(&problem.tables, Response::of(&values, 0.0), variance, 1.0, &Silent).unwrap();
+        basis.extend([problem.shells[1].clone(), problem.shells[2].clone()].concat()).unwrap();
+        backward_step(&mut basis, &problem.shells[2], 1e-6).unwrap();
+        let expected = [problem.shells[0].clone(), problem.shells[2].clone()].concat();
+        assert_eq!(basis.indices(), expected, "degree 1 is useless and goes, degree 2 stays, useful or not");
+        backward_step(&mut basis, &problem.shells[3], 1e-6).unwrap();
+        assert_eq!(basis.indices(), [MultiIndex::constant(2), MultiIndex::new(vec![2, 0])]);
+    }
+
+    /// Degree 2 in two inputs has six terms, four of which make up the values. On few points the other two correlate with
+    /// the residual and join as well: fewer than 8 points never suffice, 12 always do.
+    #[test]
+    fn two_points_per_term_are_required_and_suffice() {
+        let terms = [([0, 0], 1.0), ([1, 0], 1.0), ([0, 1], 1.0), ([1, 1], 1.0)];
+        let quadratic = Stepwise { max_degree: 2, epsilon_forward: 1e-9, epsilon_backward: 1e-9, ..settings(1.0, 1.0) };
+        for points in 4..30 {
+            let problem = problem(points, 1.0);
+            match problem.fit(&problem.values(&terms), &quadratic) {
+                Outcome::Fitted(found) => assert!(points >= 2 * found.indices.len() && found.indices.len() >= 4),
+                Outcome::TooFewSamples { .. } => assert!(points < 12, "{points} points suffice"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_design_that_is_too_small_asks_for_more_and_settles_for_the_last_degree_that_passed() {
+        let problem = problem(12, 1.0);
+        let values: Vec<f64> = problem.samples.points().map(|x| (3.0 * x[0]).sin() * (2.0 * x[1]).exp()).collect();
+        let Outcome::TooFewSamples { indices, degree } = problem.fit(&values, &settings(1.0, 1.0)) else {
+            panic!("12 points do not carry this function");
+        };
+        assert!(12 >= 2 * indices.len() && indices[0].is_constant());
+        let response = Response::of(&values, 1e-13);
+        let settled = settle(&problem.tables, response, &indices, degree, &Silent).unwrap();
+        assert_eq!((settled.degree, settled.stop), (degree, Stop::DesignExhausted));
+        assert_eq!(settled.indices.len(), indices.len());
+    }
+
+    #[test]
+    fn as_many_significant_terms_as_points_are_not_even_added() {
+        let problem = problem(6, 1.0);
+        let values: Vec<f64> = problem.samples.points().map(|x| (3.0 * x[0] + x[1]).sin()).collect();
+        let variance = Response::of(&values, 0.0).variance().unwrap();
+        let mut basis =
+            ActiveBasis::constant(&problem.tables, Response::of(&values, 0.0), variance, 1.0, &Silent).unwrap();
+        let five = [problem.shells[1].clone(), problem.shells[2].clone()].concat();
+        assert_eq!(forward_step(&mut basis, &five, 0.0), Ok(false), "with {{0}}, six terms on six points");
+        assert_eq!(basis.indices(), [MultiIndex::constant(2)]);
+        assert_eq!(forward_step(&mut basis, &five[..4], 0.0), Ok(true));
+        assert_eq!(basis.indices().len(), 5);
+    }
+
+    #[test]
+    fn values_that_do_not_vary_are_their_mean() {
+        let problem = problem(10, 1.0);
+        let values: Vec<f64> = (0..10).map(|i| 7.0 + 1e-15 * f64::from(i)).collect();
+        let found = fitted(problem.fit(&values, &settings(1.0, 0.999)));
+        assert_eq!((found.indices.len(), found.stop, found.errors), (1, Stop::Constant, None));
+        assert!((found.coefficients[0] - 7.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn an_interruption_ends_the_search() {
+        struct Stopped;
+        impl Observer for Stopped {
+            fn begin(&self, _: &str, _: u64) {}
+            fn advance(&self, _: u64) {}
+            fn finish(&self) {}
+            fn interrupted(&self) -> bool {
+                true
+            }
+        }
+        let problem = problem(10, 1.0);
+        let values: Vec<f64> = problem.samples.points().map(|x| x[0]).collect();
+        let response = Response::of(&values, 0.0);
+        let outcome = fit(&problem.tables, response, &problem.shells, &settings(1.0, 0.999), &Stopped);
+        assert_eq!(outcome, Err(Interrupted));
+    }
+}

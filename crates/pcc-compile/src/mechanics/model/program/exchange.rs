@@ -1,0 +1,164 @@
+//! One point, one process: `params.json` goes in, `results.json` comes out.
+
+use super::error::ProgramFailure;
+use super::settings::ProgramSettings;
+use super::{folder, printable, process};
+use nalgebra::Complex;
+use serde_json::Value;
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+const PARAMETERS: &str = "params.json";
+const RESULTS: &str = "results.json";
+
+/// Bytes of results that are read: a million eigenvalues.
+const LARGEST_RESULTS: u64 = 64 << 20;
+
+/// Words for what is not a number in languages that write them into JSON.
+const NOT_NUMBERS: [&str; 3] = ["nan", "infinity", "inf"];
+
+/// The eigenvalues at `point`, by a process in `folder`.
+pub(super) fn run(
+    settings: &ProgramSettings,
+    point: &[f64],
+    folder: &Path,
+    interrupted: &AtomicBool,
+) -> Result<Vec<Complex<f64>>, ProgramFailure> {
+    let path = folder.join(PARAMETERS);
+    fs::write(&path, parameters(settings, point)).map_err(|error| folder::failure(&path, &error))?;
+    process::run(settings, folder, interrupted)?;
+    eigenvalues(&read(folder)?, settings.eigenvalues)
+}
+
+/// A flat object of inputs and constants, in order. Written by hand, because maps of `serde_json` have an order of
+/// their own; numbers by their shortest decimals that read back with the same bits.
+fn parameters(settings: &ProgramSettings, point: &[f64]) -> String {
+    let inputs = settings.inputs.iter().zip(point.iter().copied());
+    let constants = settings.constants.iter().map(|(name, value)| (name, *value));
+    let members: Vec<String> =
+        inputs.chain(constants).map(|(name, value)| format!("  {}: {value:?}", Value::from(name.as_str()))).collect();
+    format!("{{\n{}\n}}\n", members.join(",\n"))
+}
+
+fn read(folder: &Path) -> Result<Vec<u8>, ProgramFailure> {
+    let trouble = |error| folder::failure(&folder.join(RESULTS), &error);
+    let file = folder::open_results(folder, RESULTS)?;
+    let length = file.metadata().map_err(trouble)?.len();
+    let mut bytes = Vec::new();
+    if length <= LARGEST_RESULTS {
+        // One more: something may still be writing.
+        file.take(LARGEST_RESULTS + 1).read_to_end(&mut bytes).map_err(trouble)?;
+    }
+    let length = length.max(bytes.len() as u64);
+    if length > LARGEST_RESULTS {
+        return Err(ProgramFailure::TooLarge { file: RESULTS, length, limit: LARGEST_RESULTS });
+    }
+    Ok(bytes)
+}
+
+fn eigenvalues(bytes: &[u8], expected: usize) -> Result<Vec<Complex<f64>>, ProgramFailure> {
+    // Some editors and languages start text with a byte order mark.
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+    let results: Value = serde_json::from_slice(bytes).map_err(|error| not_json(bytes, &error))?;
+    let Some(list) = results.get("eigenvalues").and_then(Value::as_array) else {
+        return Err(no_eigenvalues(&results));
+    };
+    let eigenvalues = list.iter().enumerate().map(|(k, value)| pair(k + 1, value)).collect::<Result<Vec<_>, _>>()?;
+    if eigenvalues.len() != expected {
+        return Err(ProgramFailure::Count { found: eigenvalues.len(), expected });
+    }
+    Ok(eigenvalues)
+}
+
+fn pair(number: usize, value: &Value) -> Result<Complex<f64>, ProgramFailure> {
+    let parts = value.as_array().map(|parts| parts.iter().map(Value::as_f64).collect::<Vec<_>>());
+    let Some([Some(re), Some(im)]) = parts.as_deref() else {
+        return Err(ProgramFailure::NotAPair {
+            number,
+            found: printable::line(&value.to_string(), printable::SHOWN_CELL),
+        });
+    };
+    // JSON has no such numbers, but what is built from them must not rely on a reader's mercy.
+    if !(re.is_finite() && im.is_finite()) {
+        return Err(ProgramFailure::NotFinite { cause: format!("eigenvalue {number}") });
+    }
+    Ok(Complex::new(*re, *im))
+}
+
+/// A program that says why it has no eigenvalues is quoted.
+fn no_eigenvalues(results: &Value) -> ProgramFailure {
+    match results.get("error").and_then(Value::as_str) {
+        Some(text) if !text.trim().is_empty() && results.get("eigenvalues").is_none_or(Value::is_null) => {
+            ProgramFailure::Reported { text: printable::line(text.trim(), printable::MESSAGE_LENGTH) }
+        }
+        _ => ProgramFailure::NoEigenvalues,
+    }
+}
+
+fn not_json(bytes: &[u8], error: &serde_json::Error) -> ProgramFailure {
+    if bytes.trim_ascii().is_empty() {
+        return ProgramFailure::NotJson { cause: "it is empty".to_owned() };
+    }
+    if let Some(word) = bare_not_number(&String::from_utf8_lossy(bytes)) {
+        return ProgramFailure::HoldsNan { word };
+    }
+    let cause = error.to_string();
+    if cause.starts_with("number out of range") {
+        return ProgramFailure::NotFinite { cause };
+    }
+    ProgramFailure::NotJson { cause }
+}
+
+/// The first word outside of strings that means what is not a number.
+fn bare_not_number(text: &str) -> Option<String> {
+    let mut outside = String::with_capacity(text.len());
+    let (mut is_inside, mut is_escaped) = (false, false);
+    for character in text.chars() {
+        match character {
+            '"' if !is_escaped => is_inside = !is_inside,
+            _ if !is_inside => outside.push(character),
+            _ => {}
+        }
+        is_escaped = is_inside && character == '\\' && !is_escaped;
+    }
+    let mut words = outside.split(|character: char| !character.is_alphanumeric());
+    words.find(|word| NOT_NUMBERS.iter().any(|name| word.eq_ignore_ascii_case(name))).map(str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_in_strings_are_not_numbers() {
+        assert_eq!(bare_not_number(r#"{"NaN": "\"NaN", "x": [1, -Infinity"#).as_deref(), Some("Infinity"));
+        assert_eq!(bare_not_number(r#"{"NaN": "inf", "x": nanometre"#), None);
+        assert_eq!(bare_not_number(r#"{"\\": nan"#).as_deref(), Some("nan"));
+    }
+
+    #[test]
+    fn every_kind_of_wrong_results_is_told_apart() {
+        let failure = |text: &str| eigenvalues(text.as_bytes(), 1).unwrap_err();
+        assert!(matches!(failure(""), ProgramFailure::NotJson { .. }));
+        assert!(matches!(failure("eigenvalues"), ProgramFailure::NotJson { .. }));
+        assert!(matches!(failure(&"[".repeat(100_000)), ProgramFailure::NotJson { .. }));
+        for text in ["{}", "[]", "3", "null", r#"{"eigenvalues": 3}"#, r#"{"eigenvalues": null, "error": " "}"#] {
+            assert_eq!(failure(text), ProgramFailure::NoEigenvalues, "{text}");
+        }
+        for value in ["1", "[1]", "[1, 2, 3]", r#"["1", "2"]"#, "null", "[null, 1]", r#"{"re": 1, "im": 2}"#, "[]"] {
+            let text = format!("{{\"eigenvalues\": [{value}]}}");
+            assert!(matches!(failure(&text), ProgramFailure::NotAPair { number: 1, .. }), "{text}");
+        }
+        assert!(matches!(failure(r#"{"eigenvalues": [[1e999, 0]]}"#), ProgramFailure::NotFinite { .. }));
+        assert_eq!(failure(r#"{"eigenvalues": []}"#), ProgramFailure::Count { found: 0, expected: 1 });
+        assert_eq!(failure(r#"{"error": "a\nb"}"#), ProgramFailure::Reported { text: "a\\nb".to_owned() });
+    }
+
+    #[test]
+    fn whole_numbers_and_other_keys_are_accepted() {
+        let text = "\u{feff}{\"error\": \"none\", \"eigenvalues\": [[-1, 18446744073709551616]]}\n";
+        assert_eq!(eigenvalues(text.as_bytes(), 1), Ok(vec![Complex::new(-1.0, 2.0_f64.powi(64))]));
+    }
+}

@@ -1,0 +1,130 @@
+//! Studies: what to build a surrogate of, and how. A TOML file becomes a validated problem.
+
+mod defaults;
+mod error;
+mod fit;
+mod identity;
+mod matrices;
+mod model;
+mod print;
+mod print_model;
+mod raw;
+mod settings;
+mod validate;
+
+pub use error::{Place, StudyError};
+pub use settings::{
+    Command, Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, FullExpansion, ModelSettings,
+    MultiElement, Smooth, Solver, SpectrumSettings, Stepwise, Table,
+};
+
+use crate::mechanics::model::matrices::Matrices;
+use crate::mechanics::model::{Clutch, Model, ModelError, Unrun};
+use pcc_evaluate::probability::inputs::InputSpace;
+use std::path::Path;
+
+/// The format of study files this version reads.
+pub const STUDY_FORMAT: u32 = 1;
+
+/// A validated study: every value is present and in range.
+///
+/// # Examples
+///
+/// ```
+/// use pcc_compile::study::Study;
+/// let study = Study::from_toml(
+///     r#"
+///     format = 1
+///     name = "friction-only"
+///     [model]
+///     kind = "clutch"
+///     [inputs]
+///     mu = { distribution = "uniform", lower = 0.0, upper = 0.5 }
+///     "#,
+/// )?;
+/// assert_eq!(study.fit.method.max_degree(), 15);
+/// assert_eq!(Study::from_toml(&study.to_toml())?, study);
+/// # Ok::<(), pcc_compile::study::StudyError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// Name of the study and of the files built from it.
+    pub name: String,
+    /// Seed of the design.
+    pub seed: u64,
+    /// The model and its constants.
+    pub model: ModelSettings,
+    /// The uncertain inputs.
+    pub inputs: InputSpace,
+    /// What of the spectrum is expanded.
+    pub spectrum: SpectrumSettings,
+    /// Where the model is run.
+    pub design: DesignSettings,
+    /// How expansions are fitted.
+    pub fit: FitSettings,
+}
+
+impl Study {
+    /// Reads a study. Files that it names are looked for in the current folder.
+    ///
+    /// # Errors
+    ///
+    /// [`StudyError`] names the key and the line, what was found and what to do.
+    pub fn from_toml(text: &str) -> Result<Self, StudyError> {
+        Self::from_toml_in(text, Path::new("."))
+    }
+
+    /// Reads a study that lies in `folder`, where the files that it names are looked for.
+    ///
+    /// # Errors
+    ///
+    /// As [`Study::from_toml`].
+    pub fn from_toml_in(text: &str, folder: &Path) -> Result<Self, StudyError> {
+        validate::study(text, folder)
+    }
+
+    /// The study as a file with every default filled in and every key explained.
+    pub fn to_toml(&self) -> String {
+        print::study(self)
+    }
+
+    /// The model, ready to run at points of the input space.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError`] if constants or inputs do not fit the model; a study read from a file was checked for that.
+    pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
+        let uncertain: Vec<&str> = self.inputs.names().collect();
+        match &self.model {
+            ModelSettings::Clutch { constants } => {
+                let constants: Vec<_> = constants.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+                Ok(Box::new(Clutch::new(&constants, &uncertain)?))
+            }
+            ModelSettings::Matrices(description) => Ok(Box::new(Matrices::new(description, &uncertain)?)),
+            ModelSettings::Command(command) => Ok(Box::new(command.program(&uncertain))),
+            ModelSettings::Table(_) => Ok(Box::new(Unrun)),
+        }
+    }
+
+    /// Whether fits use derivatives: asked for, or left open for invariants of a model that has them.
+    pub fn uses_derivatives(&self) -> bool {
+        self.fit.use_derivatives(self.spectrum.target, &self.model)
+    }
+
+    /// Hash of the model: its kind, its constants and the names of its inputs, not their distributions. Runs of models with
+    /// the same hash at the same point have the same answer. SHA-256.
+    pub fn model_hash(&self) -> [u8; 32] {
+        identity::model_hash(self)
+    }
+
+    /// Hash of what is asked: model, constants, inputs and spectrum. Two studies with the same hash have the same true
+    /// answer; `compare` demands that surrogate and study agree in it. Hexadecimal SHA-256.
+    pub fn problem_hash(&self) -> String {
+        identity::problem_hash(self)
+    }
+
+    /// Hash of the whole study with its defaults. Hexadecimal SHA-256.
+    pub fn study_hash(&self) -> String {
+        identity::study_hash(self)
+    }
+}

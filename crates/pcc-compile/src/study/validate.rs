@@ -1,0 +1,273 @@
+//! From the file as written to a study in which everything holds.
+
+use std::fmt::Debug;
+use std::ops::RangeInclusive;
+use std::path::Path;
+use toml::Spanned;
+
+use super::error::{Place, StudyError};
+use super::model::Kind;
+use super::settings::{DesignKind, DesignSettings, FitMethod, FitSettings, SpectrumSettings};
+use super::{STUDY_FORMAT, Study, defaults, raw};
+use crate::mechanics::model::Parameter;
+use crate::mechanics::spectrum::{Modes, Target};
+use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
+
+/// Design sizes above this need more memory for the regression than a workstation has.
+const LARGEST_DESIGN: i64 = 1_000_000;
+
+const DESIGNS: [DesignKind; 3] = [DesignKind::NestedLhs, DesignKind::NestedMaximinLhs, DesignKind::TensorGauss];
+
+const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
+
+/// Values and derivatives that a minimum-norm fit may take: matrices of half a gigabyte.
+const MOST_EQUATIONS: usize = 8_000;
+
+/// Univariate polynomial values that a design may need: two gigabytes.
+const LARGEST_TABLES: usize = 250_000_000;
+
+pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
+    let lines = Lines { text };
+    if let Some(format) = raw::format(text)?.format.filter(|format| *format.get_ref() != i64::from(STUDY_FORMAT)) {
+        let place = lines.place("format", &format);
+        return Err(StudyError::Format { place, found: format.into_inner(), known: STUDY_FORMAT });
+    }
+    let raw = raw::parse(text)?;
+    let name = lines.name(raw.name)?;
+    let seed = match raw.seed {
+        Some(seed) => lines.integer("seed", seed, 0..=i64::MAX)? as u64,
+        None => defaults::SEED,
+    };
+    let kind = lines.kind(&raw.model.kind)?;
+    let inputs = lines.inputs(raw.inputs, kind)?;
+    let dimension = inputs.dimension();
+    let spectrum = lines.spectrum(raw.spectrum, kind)?;
+    let failure_place = raw.model.on_failure.as_ref().map(|word| lines.place("model.on_failure", word));
+    let model = lines.model(kind, raw.model, &inputs, folder)?;
+    let fit = lines.fit(raw.fit, spectrum.target, dimension, &model)?;
+    if let Some(place) = failure_place.filter(|_| fit.method.is_quadrature() && model.skips_failures()) {
+        return Err(StudyError::SkippingOfQuadrature { place });
+    }
+    let derivatives = fit.use_derivatives(spectrum.target, &model);
+    let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
+    let max_degree = fit.method.max_degree();
+    let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
+    if !fit.method.has_fixed_design() && numbers > LARGEST_TABLES {
+        return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
+    }
+    let equations = design.maximum.saturating_mul(1 + dimension);
+    let is_least_squares = matches!(fit.method, FitMethod::Stepwise(_) | FitMethod::Gpc(_));
+    if derivatives && !is_least_squares && equations > MOST_EQUATIONS {
+        let (inputs, maximum, most) = (dimension, design.maximum, MOST_EQUATIONS);
+        return Err(StudyError::TooManyEquations { inputs, maximum, equations, most, fitting: most / (1 + inputs) });
+    }
+    Ok(Study { name, seed, model, inputs, spectrum, design, fit })
+}
+
+/// `"a", "b" or "c"`.
+fn alternatives(names: &[String]) -> String {
+    match names {
+        [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+/// Knows the text, so that errors can name lines.
+pub(super) struct Lines<'a> {
+    text: &'a str,
+}
+
+impl Lines<'_> {
+    pub(super) fn place<T>(&self, key: impl Into<String>, value: &Spanned<T>) -> Place {
+        let before = &self.text.as_bytes()[..value.span().start.min(self.text.len())];
+        Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
+    }
+
+    pub(super) fn out_of_range<T: Debug>(
+        &self,
+        key: &str,
+        value: &Spanned<T>,
+        expected: impl Into<String>,
+    ) -> StudyError {
+        StudyError::OutOfRange {
+            place: self.place(key, value),
+            found: format!("{:?}", value.get_ref()),
+            expected: expected.into(),
+        }
+    }
+
+    pub(super) fn integer(
+        &self,
+        key: &str,
+        value: Spanned<i64>,
+        range: RangeInclusive<i64>,
+    ) -> Result<i64, StudyError> {
+        if range.contains(value.get_ref()) {
+            return Ok(value.into_inner());
+        }
+        Err(self.out_of_range(key, &value, format!("a whole number from {} to {}", range.start(), range.end())))
+    }
+
+    pub(super) fn number(
+        &self,
+        key: &str,
+        value: Option<Spanned<f64>>,
+        default: f64,
+        expected: &str,
+        holds: impl Fn(f64) -> bool,
+    ) -> Result<f64, StudyError> {
+        match value {
+            None => Ok(default),
+            Some(value) if holds(*value.get_ref()) => Ok(value.into_inner()),
+            Some(value) => Err(self.out_of_range(key, &value, expected)),
+        }
+    }
+
+    pub(super) fn word<T: Copy>(
+        &self,
+        key: &str,
+        word: &Spanned<String>,
+        known: &[(&str, T)],
+    ) -> Result<T, StudyError> {
+        known.iter().find(|(name, _)| name == word.get_ref()).map(|&(_, meaning)| meaning).ok_or_else(|| {
+            let names: Vec<_> = known.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+            StudyError::UnknownWord {
+                place: self.place(key, word),
+                found: word.get_ref().clone(),
+                expected: alternatives(&names),
+            }
+        })
+    }
+
+    /// Names become file names, so they hold nothing that a file system or a shell gives a meaning.
+    fn name(&self, name: Spanned<String>) -> Result<String, StudyError> {
+        let allowed = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        let text = name.get_ref();
+        if (1..=100).contains(&text.len()) && text.chars().all(allowed) && !text.starts_with(['.', '-']) {
+            return Ok(name.into_inner());
+        }
+        Err(StudyError::OutOfRange {
+            place: self.place("name", &name),
+            found: format!("{text:?}"),
+            expected: "1 to 100 letters, digits, '.', '_' or '-', starting with a letter, digit or '_'".to_owned(),
+        })
+    }
+
+    fn inputs(&self, table: Spanned<raw::Ordered<raw::Input>>, kind: Kind) -> Result<InputSpace, StudyError> {
+        let place = self.place("inputs", &table);
+        let mut inputs = Vec::new();
+        for (name, raw) in table.into_inner().0 {
+            let parameter = self.parameter_of_kind(kind, "inputs", &name, &raw)?;
+            inputs.push(Input { marginal: self.marginal(&name, parameter, &raw)?, name });
+        }
+        InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
+    }
+
+    fn marginal(
+        &self,
+        name: &str,
+        parameter: Option<&Parameter>,
+        raw: &Spanned<raw::Input>,
+    ) -> Result<Marginal, StudyError> {
+        let key = format!("inputs.{name}");
+        let input = raw.get_ref();
+        self.word(&format!("{key}.distribution"), &input.distribution, &[("uniform", ())])?;
+        let place = self.place(&key, raw);
+        let (lower, upper) = match (input.lower, input.upper, input.nominal, input.spread) {
+            (Some(lower), Some(upper), None, None) => (lower, upper),
+            (None, None, Some(nominal), Some(spread)) => (nominal * (1.0 - spread), nominal * (1.0 + spread)),
+            _ => return Err(StudyError::DistributionForm { place }),
+        };
+        let uniform =
+            Uniform::new(lower, upper).map_err(|cause| StudyError::Distribution { place: place.clone(), cause })?;
+        if let Some(parameter) = parameter.filter(|p| !(p.range.contains(lower) && p.range.contains(upper))) {
+            let expected = format!("{} over the whole interval", parameter.range.describe());
+            return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });
+        }
+        Ok(Marginal::Uniform(uniform))
+    }
+
+    fn spectrum(&self, raw: raw::Spectrum, kind: Kind) -> Result<SpectrumSettings, StudyError> {
+        let target = match raw.target {
+            Some(word) => self.word("spectrum.target", &word, &TARGETS.map(|target| (target.name(), target)))?,
+            None => defaults::target(kind),
+        };
+        let modes = match raw.modes {
+            Some(modes) => self.modes(modes)?,
+            None => defaults::MODES,
+        };
+        Ok(SpectrumSettings { target, modes })
+    }
+
+    fn modes(&self, raw: Spanned<raw::Modes>) -> Result<Modes, StudyError> {
+        let place = self.place("spectrum.modes", &raw);
+        let wrong = |found: String| StudyError::OutOfRange {
+            place,
+            found,
+            expected: "\"all\" or a list of distinct mode numbers from 1, like [3, 4]".to_owned(),
+        };
+        match raw.into_inner() {
+            raw::Modes::Word(word) if word == "all" => Ok(Modes::All),
+            raw::Modes::Word(word) => Err(wrong(format!("{word:?}"))),
+            raw::Modes::Ranks(ranks) => {
+                let mut sorted = ranks.clone();
+                sorted.sort_unstable();
+                sorted.dedup();
+                if sorted.len() < ranks.len() || sorted.first().is_none_or(|&first| first < 1) {
+                    return Err(wrong(format!("{ranks:?}")));
+                }
+                Ok(Modes::Ranks(sorted.into_iter().map(|rank| rank as usize).collect()))
+            }
+        }
+    }
+
+    fn design(
+        &self,
+        raw: raw::Design,
+        target: Target,
+        inputs: usize,
+        fit: &FitSettings,
+        derivatives: bool,
+    ) -> Result<DesignSettings, StudyError> {
+        let kind_place = raw.kind.as_ref().map(|word| self.place("design.kind", word));
+        let default_kind = if fit.method.is_quadrature() { DesignKind::TensorGauss } else { defaults::design(target) };
+        let kind = match raw.kind {
+            Some(word) => self.word("design.kind", &word, &DESIGNS.map(|kind| (kind.name(), kind)))?,
+            None => default_kind,
+        };
+        match kind_place {
+            Some(place) if (kind == DesignKind::TensorGauss) != fit.method.is_quadrature() => {
+                return Err(StudyError::DesignOfMethod { place, kind: kind.name(), fitting: default_kind.name() });
+            }
+            _ => {}
+        }
+        let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
+        let default_maximum = defaults::maximum(target, inputs, derivatives, &fit.method);
+        let maximum = self.size("design.maximum", raw.maximum, 2, default_maximum)?;
+        if let Some(runs) = self.fixed_runs(fit, inputs, derivatives, maximum)? {
+            for (key, value) in [("design.initial", raw.initial), ("design.step", raw.step)] {
+                if let Some(value) = value {
+                    return Err(StudyError::FixedDesign { place: self.place(key, &value), runs });
+                }
+            }
+            return Ok(DesignSettings { kind, initial: runs, step: runs, maximum });
+        }
+        let default_initial = defaults::initial(target, inputs, derivatives);
+        let default_step = defaults::step(target, inputs, derivatives);
+        let initial_was_given = raw.initial.is_some();
+        let initial = self.size("design.initial", raw.initial, 2, default_initial.min(maximum))?;
+        let step = self.size("design.step", raw.step, 1, default_step)?;
+        match maximum_place {
+            Some(place) if initial_was_given && initial > maximum => Err(StudyError::OutOfRange {
+                place,
+                found: maximum.to_string(),
+                expected: format!("at least design.initial ({initial})"),
+            }),
+            _ => Ok(DesignSettings { kind, initial, step, maximum: maximum.max(initial) }),
+        }
+    }
+
+    fn size(&self, key: &str, value: Option<Spanned<i64>>, least: i64, default: usize) -> Result<usize, StudyError> {
+        value.map_or(Ok(default), |value| Ok(self.integer(key, value, least..=LARGEST_DESIGN)? as usize))
+    }
+}

@@ -1,0 +1,209 @@
+//! From a surrogate to the sections of format 1.
+
+use super::error::WriteError;
+use super::meaning::not_finite;
+use super::version::{MAJOR, minor};
+use super::{binary, v1};
+use crate::components::{Output, OutputKind};
+use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh};
+use crate::probability::inputs::Marginal;
+use crate::surrogate::{Certificate, LeaveOut, SettingValue, StopReason, Surrogate};
+use std::collections::HashMap;
+
+pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
+    let provenance = &surrogate.provenance;
+    let mut document = v1::Document {
+        format: v1::FormatVersion { major: MAJOR, minor: minor(surrogate) },
+        meta: v1::Meta {
+            tool_version: provenance.tool_version.clone(),
+            study_name: provenance.study_name.clone(),
+            problem_hash: provenance.problem_hash.clone(),
+            study_hash: provenance.study_hash.clone(),
+            content_id: String::new(),
+        },
+        inputs: inputs(surrogate),
+        outputs: v1::Outputs { outputs: surrogate.outputs.iter().map(output).collect() },
+        elements: elements(&surrogate.mesh),
+        expansions: expansions(surrogate),
+        training: training(surrogate),
+        decision: decision(surrogate),
+        self_test: v1::SelfTest {
+            points: surrogate.self_test.points.clone(),
+            components: surrogate.self_test.components.clone(),
+            max_re: surrogate.self_test.max_re.clone(),
+            tolerance: surrogate.self_test.tolerance,
+        },
+        certificates: certificates(&surrogate.certificates),
+    };
+    if let Some(section) = not_finite(&document) {
+        return Err(WriteError::NotFinite { section });
+    }
+    document.meta.content_id = binary::content_id(&document)?;
+    Ok(document)
+}
+
+fn inputs(surrogate: &Surrogate) -> v1::Inputs {
+    let dimension = surrogate.inputs.dimension();
+    let mut degrees = vec![0; dimension];
+    for expansion in &surrogate.expansions {
+        for (degree, highest) in degrees.iter_mut().zip(expansion.indices.highest_degrees(dimension)) {
+            *degree = highest.max(*degree);
+        }
+    }
+    let input = |(input, degree): (&crate::probability::inputs::Input, u16)| {
+        let Marginal::Uniform(uniform) = &input.marginal;
+        let (lower, upper) = (uniform.lower(), uniform.upper());
+        let family = input.marginal.family();
+        let recurrence = family.recurrence(usize::from(degree));
+        v1::Input {
+            name: input.name.clone(),
+            distribution: v1::Distribution::Uniform { lower, upper },
+            transform: v1::Transform::Affine { center: uniform.center(), half_width: uniform.half_width() },
+            family: match family {
+                Family::Legendre => v1::Family::Legendre,
+            },
+            recurrence: v1::Recurrence { diagonal: recurrence.diagonal, off_diagonal: recurrence.off_diagonal },
+            bounds: Some(v1::Bounds { lower, upper }),
+        }
+    };
+    let inputs = surrogate.inputs.inputs().iter().zip(degrees).map(input).collect();
+    v1::Inputs { inputs, dependence: v1::Dependence::Independent }
+}
+
+fn output(output: &Output) -> v1::Output {
+    let component = |component: &crate::components::Component| v1::Component {
+        id: component.id as u32,
+        name: component.name.clone(),
+        center: component.center,
+        scale: component.scale,
+    };
+    v1::Output {
+        kind: match output.kind {
+            OutputKind::Eigenvalue => v1::OutputKind::Eigenvalue,
+            OutputKind::Cluster => v1::OutputKind::Cluster,
+        },
+        modes: output.modes.iter().map(|&mode| mode as u32).collect(),
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        components: output.components.iter().map(component).collect(),
+    }
+}
+
+fn elements(mesh: &Mesh) -> v1::Elements {
+    let branch = |branch| match branch {
+        Branch::Element(at) => v1::Branch::Element(at as u32),
+        Branch::Split(at) => v1::Branch::Split(at as u32),
+    };
+    let splits = mesh.splits().iter().map(|split| v1::Split {
+        input: split.input as u32,
+        at: split.at,
+        below: branch(split.below),
+        above: branch(split.above),
+    });
+    v1::Elements { elements: mesh.elements().iter().map(element).collect(), splits: splits.collect() }
+}
+
+fn element(element: &Element) -> v1::Element {
+    let side = |j: usize| v1::Side {
+        bounds: Some(v1::Bounds { lower: element.lower[j], upper: element.upper[j] }),
+        center: element.center(j),
+        half_width: element.half_width(j),
+    };
+    v1::Element { weight: element.weight, sides: (0..element.lower.len()).map(side).collect() }
+}
+
+/// Expansions with equal index sets share one.
+fn expansions(surrogate: &Surrogate) -> v1::Expansions {
+    let mut pool: Vec<&IndexSet> = Vec::new();
+    let mut positions: HashMap<&IndexSet, usize> = HashMap::new();
+    let components = surrogate.component_count();
+    let expansions = surrogate
+        .expansions
+        .iter()
+        .enumerate()
+        .map(|(number, expansion)| {
+            let indices = &expansion.indices;
+            let index_set = *positions.entry(indices).or_insert_with(|| {
+                pool.push(indices);
+                pool.len() - 1
+            });
+            v1::Expansion {
+                element: (number / components) as u32,
+                component: (number % components) as u32,
+                index_set: index_set as u32,
+                coefficients: expansion.coefficients.clone(),
+                r2: expansion.r2,
+                s2: expansion.s2,
+                corrected_s2: expansion.corrected_s2,
+                leave_out: match expansion.leave_out {
+                    LeaveOut::Row => v1::LeaveOut::Row,
+                    LeaveOut::Run => v1::LeaveOut::Run,
+                },
+                degree: expansion.degree,
+                stop: match expansion.stop {
+                    StopReason::Accurate => v1::Stop::Accurate,
+                    StopReason::HighestDegree => v1::Stop::HighestDegree,
+                    StopReason::DesignExhausted => v1::Stop::DesignExhausted,
+                    StopReason::Constant => v1::Stop::Constant,
+                    StopReason::GivenDegree => v1::Stop::GivenDegree,
+                    StopReason::Settled => v1::Stop::Settled,
+                    StopReason::Limited => v1::Stop::Limited,
+                },
+            }
+        })
+        .collect();
+    let listed = |set: &IndexSet| set.iter().map(|alpha| alpha.to_vec()).collect();
+    v1::Expansions { index_sets: pool.into_iter().map(listed).collect(), expansions }
+}
+
+fn training(surrogate: &Surrogate) -> v1::Training {
+    let training = &surrogate.training;
+    let setting = |setting: &crate::surrogate::Setting| v1::Setting {
+        key: setting.key.clone(),
+        value: match &setting.value {
+            SettingValue::Integer(value) => v1::SettingValue::Integer(*value),
+            SettingValue::Number(value) => v1::SettingValue::Number(*value),
+            SettingValue::Text(value) => v1::SettingValue::Text(value.clone()),
+            SettingValue::Flag(value) => v1::SettingValue::Flag(*value),
+        },
+    };
+    let counts = training.counts;
+    v1::Training {
+        method: training.method.clone(),
+        settings: training.settings.iter().map(setting).collect(),
+        design: training.design.clone(),
+        seed: training.seed,
+        levels: training.levels.clone(),
+        counts: v1::Counts {
+            values: counts.values,
+            gradients: counts.gradients,
+            failed: counts.failed,
+            final_mesh: counts.final_mesh,
+            direct_computations: counts.direct_computations,
+        },
+    }
+}
+
+fn decision(surrogate: &Surrogate) -> v1::Decision {
+    let quantiles = surrogate.decision.max_re_residuals.iter();
+    v1::Decision {
+        max_re_residuals: quantiles.map(|q| v1::Quantile { level: q.level, value: q.value }).collect(),
+        proportion_error: surrogate.decision.proportion_error,
+    }
+}
+
+fn certificates(certificates: &[Certificate]) -> Option<v1::Certificates> {
+    let certificate = |certificate: &Certificate| v1::Certificate {
+        seed: certificate.seed,
+        samples: certificate.samples,
+        scheme: certificate.scheme.clone(),
+        falsely_stable: certificate.falsely_stable,
+        falsely_unstable: certificate.falsely_unstable,
+        level: certificate.level,
+        lower: certificate.lower,
+        upper: certificate.upper,
+        problem_hash: certificate.problem_hash.clone(),
+    };
+    (!certificates.is_empty())
+        .then(|| v1::Certificates { certificates: certificates.iter().map(certificate).collect() })
+}

@@ -1,0 +1,297 @@
+//! The value of one input at which a system loses stability.
+//!
+//! For every random sample of the other inputs, the critical value of input j is the smallest value of its domain at
+//! which max Re λ ≥ 0. Its distribution says where a limit for this input has to lie so that, say, 99 % of all systems
+//! stay stable below it.
+//!
+//! 1. max Re λ at the 65 ends of 64 equal cells of the input's domain, from below, until one is unstable. If it is the
+//!    first, the critical value is the lower bound; if there is none, there is no critical value.
+//! 2. The crossing between the last stable and the first unstable end, by interpolation with the safety of
+//!    bisection, until a stable and an unstable value are less than 10⁻⁹ of the domain's width apart: the critical
+//!    value is the unstable one.
+//!
+//! Instability that begins and ends inside one cell is missed, and among several crossings inside a cell any one can be
+//! found. Polynomials of degree up to some tens do not oscillate within such a cell, but max Re λ can rise above zero
+//! within one and fall again where it barely does so.
+//!
+//! Many samples are searched side by side, one per lane of the evaluator. Critical values are kept as counts in 10 000
+//! equal bins, so memory does not depend on the number of samples.
+
+use super::bracket::{Bracket, End};
+use crate::evaluation::EvalError;
+use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
+use crate::evaluation::kernel::plan::Plan;
+use crate::evaluation::kernel::points::Evaluator;
+use crate::evaluation::survey::region::Region;
+use crate::foundation::Observer;
+use crate::probability::inputs::{Marginal, Uniform};
+use crate::probability::random::{Purpose, Stream};
+use crate::probability::statistics::Moments;
+use crate::surrogate::Surrogate;
+use std::ops::Range;
+
+/// Cells of the grid on which instability is looked for; a power of two, so that its points are exact.
+const GRID: u32 = 64;
+
+/// Bins of the counts: the resolution of quantiles is 10⁻⁴ of the domain's width.
+const BINS: usize = 10_000;
+
+/// Levels of the quantiles that reports show.
+pub const CRITICAL_LEVELS: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
+
+/// The distribution of the critical value of one input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CriticalValues {
+    /// Number of samples of the other inputs.
+    pub samples: u64,
+    /// Samples that are stable at every point of the grid: they have no critical value.
+    pub never: u64,
+    /// Samples that are unstable at the lower bound already: it is their critical value.
+    pub unstable_from_start: u64,
+    domain: Uniform,
+    /// Critical values above the lower bound, per bin.
+    counts: Vec<u64>,
+    /// All critical values, as shares of the domain's width above the lower bound.
+    shares: Moments,
+}
+
+impl CriticalValues {
+    fn new(samples: u64, domain: Uniform) -> Self {
+        let counts = vec![0; BINS];
+        Self { samples, never: 0, unstable_from_start: 0, domain, counts, shares: Moments::default() }
+    }
+
+    /// The critical value that a share `level` ∈ \[0, 1\] of all samples does not exceed, in the input's own unit, to
+    /// 10⁻⁴ of the domain's width: interpolated linearly inside its bin. Samples that never lose stability count as
+    /// above the upper bound; `None` if the quantile lies among them.
+    pub fn quantile(&self, level: f64) -> Option<f64> {
+        let rank = level * self.samples as f64;
+        let mut below = self.unstable_from_start as f64;
+        if self.unstable_from_start > 0 && rank <= below {
+            return Some(self.physical(0.0));
+        }
+        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
+            let count = count as f64;
+            if rank <= below + count {
+                let share = (bin as f64 + (rank - below) / count) / BINS as f64;
+                return Some(self.physical(share.max(self.shares.minimum()).min(self.shares.maximum())));
+            }
+            below += count;
+        }
+        None
+    }
+
+    /// Mean critical value of the samples that lose stability, in the input's own unit; `None` if there are none.
+    pub fn mean(&self) -> Option<f64> {
+        self.of_lost(Moments::mean)
+    }
+
+    /// Smallest critical value, in the input's own unit; `None` if no sample loses stability.
+    pub fn minimum(&self) -> Option<f64> {
+        self.of_lost(Moments::minimum)
+    }
+
+    /// Largest critical value, in the input's own unit; `None` if no sample loses stability.
+    pub fn maximum(&self) -> Option<f64> {
+        self.of_lost(Moments::maximum)
+    }
+
+    fn of_lost(&self, part: fn(&Moments) -> f64) -> Option<f64> {
+        (self.shares.count() > 0).then(|| self.physical(part(&self.shares)))
+    }
+
+    fn physical(&self, share: f64) -> f64 {
+        let (lower, upper) = (self.domain.lower(), self.domain.upper());
+        (lower + share * (upper - lower)).clamp(lower, upper)
+    }
+
+    fn add(&mut self, part: &Part) {
+        self.never += part.never;
+        self.unstable_from_start += part.unstable_from_start;
+        for &share in &part.crossings {
+            self.counts[((share * BINS as f64) as usize).min(BINS - 1)] += 1;
+        }
+        self.shares.merge(&Moments::of(&vec![0.0; part.unstable_from_start as usize]));
+        self.shares.merge(&Moments::of(&part.crossings));
+    }
+}
+
+/// The critical value of input number `input`, from 0, over samples 0 … `samples` − 1 of the others under `seed`, on
+/// the current rayon thread pool.
+///
+/// Sample i has the coordinates that [`monte_carlo`](fn@crate::evaluation::monte_carlo) evaluates as sample i under this seed,
+/// except that of `input`. The result is the same bits for any number of threads.
+///
+/// # Errors
+///
+/// [`EvalError`]; [`EvalError::NoSuchInput`] if there are not that many inputs.
+///
+/// # Examples
+///
+/// ```
+/// use pcc_evaluate::artifact;
+/// use pcc_evaluate::evaluation::critical_values;
+/// use pcc_evaluate::foundation::Silent;
+/// let surrogate = artifact::decode(include_bytes!("../../../../../surrogates/clutch-r2-eigenvalues.pcc"))?.surrogate;
+/// assert_eq!(surrogate.inputs.names().next(), Some("mu"));
+/// let friction = critical_values(&surrogate, 0, 1000, 1, &Silent)?;
+/// let safe = friction.quantile(0.01).expect("more than 1 % lose stability");
+/// assert!(friction.minimum() <= Some(safe) && Some(safe) <= friction.mean());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn critical_values(
+    surrogate: &Surrogate,
+    input: usize,
+    samples: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<CriticalValues, EvalError> {
+    critical_values_in(surrogate, &Region::whole(surrogate.inputs.dimension()), input, samples, seed, observer)
+}
+
+/// The same with the other inputs confined to `region`; `input` itself is looked for in all of its domain.
+///
+/// # Errors
+///
+/// As [`critical_values`].
+pub fn critical_values_in(
+    surrogate: &Surrogate,
+    region: &Region,
+    input: usize,
+    samples: u64,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Result<CriticalValues, EvalError> {
+    let inputs = surrogate.inputs.inputs();
+    let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
+    let Marginal::Uniform(domain) = chosen.marginal;
+    let plan = Plan::new(surrogate);
+    let mut values = CriticalValues::new(samples, domain);
+    in_chunks(
+        samples,
+        CHUNK,
+        observer,
+        || Search { surrogate, region, evaluator: Evaluator::new(surrogate, &plan), input, seed, points: Vec::new() },
+        |search, range| search.run(range, observer),
+        |part| values.add(&part),
+    )?;
+    Ok(values)
+}
+
+/// What was found in one chunk of samples.
+struct Part {
+    never: u64,
+    unstable_from_start: u64,
+    /// Critical values above the lower bound, as shares of the domain's width.
+    crossings: Vec<f64>,
+}
+
+/// A sample of the chunk with the last point known to be stable.
+struct Stable {
+    sample: usize,
+    end: End,
+}
+
+/// A sample of the chunk with the interval in which it loses stability.
+struct Losing {
+    sample: usize,
+    bracket: Bracket,
+}
+
+/// Searches chunks of samples, with memory of its own.
+struct Search<'a> {
+    surrogate: &'a Surrogate,
+    region: &'a Region,
+    evaluator: Evaluator<'a>,
+    input: usize,
+    seed: u64,
+    /// Standardized coordinates of every sample of the chunk.
+    points: Vec<f64>,
+}
+
+impl Search<'_> {
+    fn run(&mut self, range: Range<u64>, observer: &dyn Observer) -> Result<Part, EvalError> {
+        let dimension = self.surrogate.inputs.dimension();
+        let samples = (range.end - range.start) as usize;
+        self.points.resize(samples * dimension, 0.0);
+        for (index, point) in range.zip(self.points.chunks_exact_mut(dimension)) {
+            let mut stream = Stream::new(self.seed, Purpose::Evaluation, index);
+            for (j, coordinate) in point.iter_mut().enumerate() {
+                *coordinate = self.region.place(j, stream.next_unit());
+            }
+        }
+        let start: Vec<_> = (0..samples).map(|sample| (sample, grid_point(0))).collect();
+        let ends = self.evaluate(&start)?;
+        let stable: Vec<Stable> = ends
+            .into_iter()
+            .enumerate()
+            .filter(|(_, end)| end.max_re < 0.0)
+            .map(|(sample, end)| Stable { sample, end })
+            .collect();
+        let unstable_from_start = (samples - stable.len()) as u64;
+        let (never, mut losing) = self.march(stable, observer)?;
+        self.refine(&mut losing, observer)?;
+        let crossings = losing.iter().map(|losing| 0.5 * (1.0 + losing.bracket.unstable.xi)).collect();
+        Ok(Part { never, unstable_from_start, crossings })
+    }
+
+    /// Step 1: how many samples stay stable up to the upper bound, and the cells in which the others do not.
+    fn march(&mut self, mut stable: Vec<Stable>, observer: &dyn Observer) -> Result<(u64, Vec<Losing>), EvalError> {
+        let mut losing = Vec::with_capacity(stable.len());
+        for k in 1..=GRID {
+            observer.check()?;
+            let trials: Vec<_> = stable.iter().map(|stable| (stable.sample, grid_point(k))).collect();
+            let ends = self.evaluate(&trials)?;
+            let mut still = Vec::with_capacity(stable.len());
+            for (Stable { sample, end: before }, end) in stable.into_iter().zip(ends) {
+                if end.max_re < 0.0 {
+                    still.push(Stable { sample, end });
+                } else {
+                    losing.push(Losing { sample, bracket: Bracket::new(before, end) });
+                }
+            }
+            stable = still;
+        }
+        Ok((stable.len() as u64, losing))
+    }
+
+    /// Step 2: narrows all brackets; each takes a bounded number of trials.
+    fn refine(&mut self, losing: &mut [Losing], observer: &dyn Observer) -> Result<(), EvalError> {
+        let mut open: Vec<&mut Losing> = losing.iter_mut().collect();
+        while !open.is_empty() {
+            observer.check()?;
+            let trials: Vec<_> = open.iter().map(|losing| (losing.sample, losing.bracket.trial())).collect();
+            for (losing, end) in open.iter_mut().zip(self.evaluate(&trials)?) {
+                losing.bracket.narrow(end);
+            }
+            open.retain(|losing| !losing.bracket.is_narrow());
+        }
+        Ok(())
+    }
+
+    /// max Re λ of samples of the chunk with the input's standardized value set to that of the trial.
+    fn evaluate(&mut self, trials: &[(usize, f64)]) -> Result<Vec<End>, EvalError> {
+        let (points, input) = (&self.points, self.input);
+        let set_point = |(sample, xi): (usize, f64), point: &mut [f64]| {
+            point.copy_from_slice(&points[sample * point.len()..(sample + 1) * point.len()]);
+            point[input] = xi;
+        };
+        let mut found = Vec::with_capacity(trials.len());
+        self.evaluator.max_re(trials.len(), |number, point| set_point(trials[number], point), &mut found);
+        if let Some(at) = found.iter().position(|max_re| !max_re.is_finite()) {
+            let inputs = &self.surrogate.inputs;
+            let mut point = vec![0.0; inputs.dimension()];
+            set_point(trials[at], &mut point);
+            return Err(EvalError::NotFinite { point: inputs.describe(&inputs.physical(&point)) });
+        }
+        Ok(trials.iter().zip(found).map(|(&(_, xi), max_re)| End { xi, max_re }).collect())
+    }
+}
+
+/// Grid point number k of the standardized domain \[−1, 1\], exact.
+fn grid_point(k: u32) -> f64 {
+    2.0 * f64::from(k) / f64::from(GRID) - 1.0
+}
+
+#[cfg(test)]
+mod tests;

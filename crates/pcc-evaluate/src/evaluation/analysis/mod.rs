@@ -1,0 +1,7 @@
+//! Answers that need more than one value per sample: sensitivities, critical values, the self-test.
+
+pub(super) mod bracket;
+pub(super) mod correlation;
+pub(super) mod critical;
+pub(super) mod self_test;
+pub(super) mod sensitivity;

@@ -1,0 +1,42 @@
+//! One number for each point of a block.
+
+use pulp::Simd;
+
+/// Points evaluated together, one per lane: as many as eight vectors of the widest instruction set hold.
+pub const LANES: usize = 64;
+
+/// Vectors that a calculation works on at once: enough for the processor to start one operation while others are under way,
+/// few enough to stay in registers.
+pub(crate) const VECTORS: usize = 8;
+
+/// One number per lane, aligned like the widest vectors, so that none of them crosses a cache line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Lanes(pub [f64; LANES]);
+
+/// [`VECTORS`] vectors of an instruction set.
+pub(crate) type Vectors<S> = [<S as Simd>::f64s; VECTORS];
+
+impl Lanes {
+    /// The same number in every lane.
+    pub const fn splat(value: f64) -> Self {
+        Self([value; LANES])
+    }
+
+    /// How many parts of [`VECTORS`] vectors make up all lanes.
+    pub(crate) const fn parts<S: Simd>() -> usize {
+        LANES / (VECTORS * S::F64_LANES)
+    }
+
+    /// One part.
+    #[inline(always)]
+    pub(crate) fn read<S: Simd>(&self, part: usize) -> Vectors<S> {
+        S::as_simd_f64s(&self.0).0.as_chunks::<VECTORS>().0[part]
+    }
+
+    /// Replaces one part.
+    #[inline(always)]
+    pub(crate) fn write<S: Simd>(&mut self, part: usize, vectors: Vectors<S>) {
+        S::as_mut_simd_f64s(&mut self.0).0.as_chunks_mut::<VECTORS>().0[part] = vectors;
+    }
+}

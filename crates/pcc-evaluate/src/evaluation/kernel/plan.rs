@@ -1,0 +1,176 @@
+//! A surrogate compiled for speed.
+//!
+//! All components are expanded in products of the same univariate polynomials, and their multi-indices overlap. The plan
+//! merges them into one [`Program`] per element, which is evaluated at [`crate::evaluation::LANES`] points at a time, one per lane, with the vector
+//! instructions of the processor; eigenvalues and max Re λ follow in the same lanes.
+
+use super::kernel;
+use super::lanes::Lanes;
+use super::operations::Program;
+use super::recombination::recombine;
+use super::results::Results;
+use crate::components::Output;
+use crate::foundation::InstructionSet;
+use crate::polynomials::Mesh;
+use crate::surrogate::Surrogate;
+use pulp::{Simd, WithSimd};
+
+/// A compiled surrogate.
+///
+/// # Examples
+///
+/// ```
+/// use pcc_evaluate::artifact;
+/// use pcc_evaluate::evaluation::{Lanes, Plan};
+/// let surrogate = artifact::decode(include_bytes!("../../../../../surrogates/clutch-r1-eigenvalues.pcc"))?.surrogate;
+/// let plan = Plan::new(&surrogate);
+/// let mut workspace = plan.workspace();
+/// // One input, the same point in every lane.
+/// workspace.points_mut()[0] = Lanes::splat(0.25);
+/// plan.evaluate(0, &mut workspace);
+/// let expected = surrogate.evaluate(&[0.25])[0];
+/// assert!((workspace.results().components[0].0[0] - expected).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Plan {
+    instructions: InstructionSet,
+    mesh: Mesh,
+    outputs: Vec<Output>,
+    dimension: usize,
+    modes: usize,
+    /// One per element.
+    programs: Vec<Program>,
+}
+
+/// Memory that an evaluation works in.
+#[derive(Debug, Clone)]
+pub struct Workspace {
+    points: Vec<Lanes>,
+    table: Vec<Lanes>,
+    results: Results,
+}
+
+impl Workspace {
+    /// Local variables of the element, for one element the standardized coordinates: one entry per input, one lane per point.
+    pub fn points_mut(&mut self) -> &mut [Lanes] {
+        &mut self.points
+    }
+
+    /// What [`Plan::evaluate`] found.
+    pub fn results(&self) -> &Results {
+        &self.results
+    }
+}
+
+impl Plan {
+    /// Compiles `surrogate` for the fastest instructions of this processor. Centre and scale of the components are folded into
+    /// the coefficients.
+    pub fn new(surrogate: &Surrogate) -> Self {
+        Self::with_instructions(surrogate, InstructionSet::best())
+    }
+
+    /// Compiles `surrogate` for chosen instructions; results are the same bits for all.
+    pub fn with_instructions(surrogate: &Surrogate, instructions: InstructionSet) -> Self {
+        let elements = 0..surrogate.mesh.elements().len();
+        Self {
+            instructions,
+            mesh: surrogate.mesh.clone(),
+            outputs: surrogate.outputs.clone(),
+            dimension: surrogate.inputs.dimension(),
+            modes: surrogate.modes().len(),
+            programs: elements.map(|element| Program::new(surrogate, element)).collect(),
+        }
+    }
+
+    /// What it runs with.
+    pub fn instructions(&self) -> InstructionSet {
+        self.instructions
+    }
+
+    /// The elements and how to find them.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Number of different terms of all expansions of an element, the constant not counted; the most of any element.
+    pub fn terms(&self) -> usize {
+        self.most(|program| program.terms)
+    }
+
+    /// Floating-point operations per point for the values of all components, a fused multiply-add counted as two: five per univariate
+    /// value, one per product of a parent; in each component two per coefficient and two per parent, but that the coefficient of
+    /// a parent, which starts its sum, costs nothing, and the first in a sum without such a start one. With several elements two per
+    /// input for the local variables, and those of the most expensive element. Roots and statistics are not counted.
+    pub fn flops(&self) -> usize {
+        let maps = if self.programs.len() > 1 { 2 * self.dimension } else { 0 };
+        maps + self.most(Program::flops)
+    }
+
+    /// Memory for [`Plan::evaluate`].
+    pub fn workspace(&self) -> Workspace {
+        let lanes = |count| vec![Lanes::splat(0.0); count];
+        Workspace {
+            points: lanes(self.dimension),
+            table: lanes(self.most(Program::rows)),
+            results: Results {
+                components: lanes(self.most(|program| program.constants.len())),
+                growth_rates: lanes(self.modes),
+                angular_frequencies: lanes(self.modes),
+                max_re: Lanes::splat(0.0),
+            },
+        }
+    }
+
+    /// Evaluates components, eigenvalues and max Re λ at the points of the workspace, which lie in this element.
+    ///
+    /// # Panics
+    ///
+    /// If there are not that many elements.
+    pub fn evaluate(&self, element: usize, workspace: &mut Workspace) {
+        self.evaluate_components(element, workspace);
+        self.instructions.run(Recombining { outputs: &self.outputs, results: &mut workspace.results });
+    }
+
+    /// The components alone.
+    ///
+    /// # Panics
+    ///
+    /// If there are not that many elements.
+    pub fn evaluate_components(&self, element: usize, workspace: &mut Workspace) {
+        self.instructions.run(Evaluating { program: &self.programs[element], workspace });
+    }
+
+    fn most(&self, part: impl Fn(&Program) -> usize) -> usize {
+        self.programs.iter().map(part).max().unwrap_or(0)
+    }
+}
+
+struct Evaluating<'a> {
+    program: &'a Program,
+    workspace: &'a mut Workspace,
+}
+
+impl WithSimd for Evaluating<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Workspace { points, table, results } = self.workspace;
+        kernel::evaluate(simd, self.program, points, table, &mut results.components);
+    }
+}
+
+struct Recombining<'a> {
+    outputs: &'a [Output],
+    results: &'a mut Results,
+}
+
+impl WithSimd for Recombining<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        recombine(self.outputs, self.results);
+    }
+}

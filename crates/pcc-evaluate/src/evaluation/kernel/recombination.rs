@@ -1,0 +1,155 @@
+//! Eigenvalues from components in all lanes at once.
+//!
+//! Single modes and pairs, whatever they are made of, take plain loops over lanes, which compile to vector instructions;
+//! larger clusters are polynomials whose roots are found lane by lane. The values are those of [`Output::recombine`], bit by
+//! bit.
+
+use super::lanes::{LANES, Lanes};
+use super::results::Results;
+use crate::components::{Output, OutputKind, is_equal_frequency, is_safe_square, square_root};
+use num_complex::Complex;
+
+/// Fills in eigenvalues and max Re λ, given the components.
+#[inline(always)]
+pub(crate) fn recombine(outputs: &[Output], results: &mut Results) {
+    let Results { components, growth_rates, angular_frequencies, max_re } = results;
+    let mut first_mode = 0;
+    for output in outputs {
+        let modes = first_mode..first_mode + output.modes.len();
+        let (re, im) = (&mut growth_rates[modes.clone()], &mut angular_frequencies[modes.clone()]);
+        first_mode = modes.end;
+        let part = |k: usize| &components[output.components[k].id];
+        match (output.kind, re, im) {
+            (OutputKind::Eigenvalue, [re], [im]) => (*re, *im) = (*part(0), *part(1)),
+            (OutputKind::Cluster, [re_1, re_2], [im_1, im_2]) => {
+                pair([part(0), part(1)], [part(2), part(3)], [re_1, re_2], [im_1, im_2]);
+            }
+            (_, re, im) => lane_by_lane(output, components, re, im),
+        }
+    }
+    *max_re = spectral_abscissa(growth_rates, angular_frequencies);
+}
+
+/// λ = s ± √−c_0, by frequency.
+#[inline(always)]
+fn pair(mean: [&Lanes; 2], constant: [&Lanes; 2], re: [&mut Lanes; 2], im: [&mut Lanes; 2]) {
+    let ([re_1, re_2], [im_1, im_2]) = (re, im);
+    let (mut root_re, mut root_im) = (Lanes::splat(0.0), Lanes::splat(0.0));
+    square_roots(constant, &mut root_re, &mut root_im);
+    for lane in 0..LANES {
+        let (s_re, s_im) = (mean[0].0[lane], mean[1].0[lane]);
+        let (r_re, r_im) = (root_re.0[lane], root_im.0[lane]);
+        let (minus, plus) = ((s_re - r_re, s_im - r_im), (s_re + r_re, s_im + r_im));
+        let swapped = if is_equal_frequency(minus.1, plus.1) { minus.0 > plus.0 } else { minus.1 - plus.1 > 0.0 };
+        let (first, second) = if swapped { (plus, minus) } else { (minus, plus) };
+        (re_1.0[lane], im_1.0[lane]) = first;
+        (re_2.0[lane], im_2.0[lane]) = second;
+    }
+}
+
+/// The square roots of −c, as [`square_root`] computes them; lanes whose square would over- or underflow are done by it.
+#[inline(always)]
+fn square_roots(c: [&Lanes; 2], root_re: &mut Lanes, root_im: &mut Lanes) {
+    let mut all_safe = true;
+    for lane in 0..LANES {
+        let (re, im) = (-c[0].0[lane], -c[1].0[lane]);
+        let square = re * re + im * im;
+        all_safe &= is_safe_square(square);
+        let larger_part = (0.5 * (square.sqrt() + re.abs())).sqrt();
+        let smaller_part = 0.5 * im / larger_part;
+        let is_right = re >= 0.0;
+        root_re.0[lane] = if is_right { larger_part } else { smaller_part.abs() };
+        root_im.0[lane] = if is_right { smaller_part } else { larger_part.copysign(im) };
+    }
+    if !all_safe {
+        for lane in 0..LANES {
+            let root = square_root(-Complex::new(c[0].0[lane], c[1].0[lane]));
+            (root_re.0[lane], root_im.0[lane]) = (root.re, root.im);
+        }
+    }
+}
+
+/// Any output, one lane after the other.
+fn lane_by_lane(output: &Output, components: &[Lanes], re: &mut [Lanes], im: &mut [Lanes]) {
+    let mut values = vec![0.0; components.len()];
+    let mut eigenvalues = Vec::with_capacity(re.len());
+    for lane in 0..LANES {
+        values.iter_mut().zip(components).for_each(|(value, component)| *value = component.0[lane]);
+        eigenvalues.clear();
+        output.recombine(&values, &mut eigenvalues);
+        for ((re, im), lambda) in re.iter_mut().zip(im.iter_mut()).zip(&eigenvalues) {
+            (re.0[lane], im.0[lane]) = (lambda.re, lambda.im);
+        }
+    }
+}
+
+/// max Re λ; NaN where any part of an eigenvalue is NaN or infinite.
+#[inline(always)]
+fn spectral_abscissa(growth_rates: &[Lanes], angular_frequencies: &[Lanes]) -> Lanes {
+    let mut largest = Lanes::splat(f64::NEG_INFINITY);
+    for (re, im) in growth_rates.iter().zip(angular_frequencies) {
+        for lane in 0..LANES {
+            let (re, im, before) = (re.0[lane], im.0[lane], largest.0[lane]);
+            let is_finite = re.abs() < f64::INFINITY && im.abs() < f64::INFINITY;
+            let larger = if re > before { re } else { before };
+            largest.0[lane] = if is_finite { larger } else { f64::NAN };
+            // NaN stays: no comparison with it holds, and it is what is kept then.
+        }
+    }
+    largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::components::{Component, spectral_abscissa as abscissa_of};
+
+    /// A pair of modes from the mean s and the constant c_0 of z² + c_0.
+    fn pair_output() -> Output {
+        let component = |id| Component { id, name: String::new(), center: 0.0, scale: 1.0 };
+        Output {
+            kind: OutputKind::Cluster,
+            modes: vec![1, 2],
+            name: String::new(),
+            unit: String::new(),
+            components: (0..4).map(component).collect(),
+        }
+    }
+
+    /// Bits, so that NaN equals NaN and 0 is not −0.
+    fn bits(values: impl IntoIterator<Item = f64>) -> Vec<u64> {
+        values.into_iter().map(|value| if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }).collect()
+    }
+
+    #[test]
+    fn pairs_in_lanes_are_those_of_one_sample_for_all_kinds_of_numbers() {
+        let parts = [0.0, -0.0, 1.0, -3.5, 1e-300, -5e-324, 1e200, -1e308, f64::INFINITY, f64::NAN, 1e-160, -2e-140];
+        let cases: Vec<[f64; 4]> = parts
+            .iter()
+            .flat_map(|&re| parts.iter().map(move |&im| [re, im]))
+            .flat_map(|[re, im]| [[-1.0, 100.0, re, im], [re, im, 4.0, 0.5]])
+            .collect();
+        let output = pair_output();
+        // Unusual numbers beside plain ones, and among their like.
+        for chunk in cases.chunks(LANES - 1) {
+            let mut results = Results {
+                components: vec![Lanes::splat(0.25); 4],
+                growth_rates: vec![Lanes::splat(0.0); 2],
+                angular_frequencies: vec![Lanes::splat(0.0); 2],
+                max_re: Lanes::splat(0.0),
+            };
+            for (lane, case) in chunk.iter().enumerate() {
+                (0..4).for_each(|id| results.components[id].0[lane] = case[id]);
+            }
+            recombine(std::slice::from_ref(&output), &mut results);
+            for (lane, case) in chunk.iter().enumerate() {
+                let mut expected = Vec::new();
+                output.recombine(case, &mut expected);
+                let found = |lists: &[Lanes]| bits(lists.iter().map(|list| list.0[lane]));
+                assert_eq!(found(&results.growth_rates), bits(expected.iter().map(|l| l.re)), "{case:?}");
+                assert_eq!(found(&results.angular_frequencies), bits(expected.iter().map(|l| l.im)), "{case:?}");
+                assert_eq!(bits([results.max_re.0[lane]]), bits([abscissa_of(&expected)]), "{case:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! What a plan finds at the points of a block.
+
+use super::lanes::Lanes;
+
+/// Results at the points of a block, one lane per point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Results {
+    /// Values of all components, by id.
+    pub components: Vec<Lanes>,
+    /// Re λ of every mode, in 1/s.
+    pub growth_rates: Vec<Lanes>,
+    /// Im λ of every mode, in rad/s.
+    pub angular_frequencies: Vec<Lanes>,
+    /// max Re λ, in 1/s; NaN where a part of an eigenvalue is not finite.
+    pub max_re: Lanes,
+}

@@ -1,0 +1,221 @@
+//! Counts and moments of many samples, gathered from blocks of lanes.
+//!
+//! Moments of a chunk come from sums of deviations from the mean of its first block, in 16 interleaved parts, whatever the width of
+//! the processor's vectors: the bits are the same everywhere.
+
+use super::quantity::{Quantity, damping_ratios};
+use crate::components::{ModeSummary, Summary};
+use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::results::Results;
+use crate::probability::statistics::{Merge, Moments};
+use pulp::{Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+/// Interleaved partial sums: a divisor of [`LANES`].
+const PARTS: usize = 16;
+
+/// What was counted and summed over some samples.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tally {
+    /// Stability, moments, modes.
+    pub summary: Summary,
+    /// Samples in each event.
+    pub events: Vec<u64>,
+}
+
+impl Tally {
+    /// Whether all moments are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        self.summary.moments().all(Moments::is_finite)
+    }
+}
+
+impl Merge for Tally {
+    fn merge(&mut self, next: &Self) {
+        self.summary.merge(&next.summary);
+        self.events.iter_mut().zip(&next.events).for_each(|(own, added)| *own += added);
+    }
+}
+
+/// Samples in which a quantity lies on one side of a threshold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Watch {
+    pub quantity: Quantity,
+    /// Below the threshold, or above.
+    pub below: bool,
+    pub threshold: f64,
+}
+
+/// Sums over the samples of a chunk.
+#[derive(Debug, Clone)]
+pub(crate) struct Gathering<'a> {
+    /// Errors of max Re λ that could be, in 1/s.
+    shifts: [f64; 2],
+    watches: &'a [Watch],
+    count: u64,
+    stable: u64,
+    stable_if_shifted: [u64; 2],
+    events: Vec<u64>,
+    max_re: Sums,
+    components: Vec<Sums>,
+    modes: Vec<ModeSums>,
+    is_finite: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct ModeSums {
+    growth_rate: Sums,
+    angular_frequency: Sums,
+    damping_ratio: Sums,
+    unstable: u64,
+}
+
+/// Sums of the deviations d of a quantity from `shift`.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+struct Sums {
+    first: [f64; PARTS],
+    second: [f64; PARTS],
+    minimum: [f64; PARTS],
+    maximum: [f64; PARTS],
+    shift: f64,
+}
+
+impl<'a> Gathering<'a> {
+    /// Nothing yet, of so many components and modes; 0 of them for counts alone.
+    pub fn new(components: usize, modes: usize, shifts: [f64; 2], watches: &'a [Watch]) -> Self {
+        let mode =
+            ModeSums { growth_rate: Sums::NONE, angular_frequency: Sums::NONE, damping_ratio: Sums::NONE, unstable: 0 };
+        Self {
+            shifts,
+            watches,
+            count: 0,
+            stable: 0,
+            stable_if_shifted: [0; 2],
+            events: vec![0; watches.len()],
+            max_re: Sums::NONE,
+            components: vec![Sums::NONE; components],
+            modes: vec![mode; modes],
+            is_finite: true,
+        }
+    }
+
+    /// Whether max Re λ was finite in all samples.
+    pub fn is_finite(&self) -> bool {
+        self.is_finite
+    }
+
+    /// What was gathered.
+    pub fn tally(&self) -> Tally {
+        let moments = |sums: &Sums| sums.moments(self.count);
+        let mode = |sums: &ModeSums| ModeSummary {
+            growth_rate: moments(&sums.growth_rate),
+            angular_frequency: moments(&sums.angular_frequency),
+            damping_ratio: moments(&sums.damping_ratio),
+            unstable: sums.unstable,
+        };
+        let summary = Summary {
+            stable: self.stable,
+            stable_if_shifted: self.stable_if_shifted,
+            max_re: moments(&self.max_re),
+            components: self.components.iter().map(moments).collect(),
+            modes: self.modes.iter().map(mode).collect(),
+        };
+        Tally { summary, events: self.events.clone() }
+    }
+}
+
+/// Adds the first `lanes` samples of a block to a gathering.
+pub(crate) struct Adding<'a, 'b> {
+    pub gathering: &'a mut Gathering<'b>,
+    pub results: &'a Results,
+    pub lanes: usize,
+}
+
+impl WithSimd for Adding<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { gathering, results, lanes } = self;
+        let max_re = &results.max_re;
+        let is_first = gathering.count == 0;
+        gathering.count += lanes as u64;
+        gathering.is_finite &= count(max_re, lanes, |value| value.abs() < f64::INFINITY) == lanes as u64;
+        gathering.stable += count(max_re, lanes, |value| value < 0.0);
+        for (counted, shift) in gathering.stable_if_shifted.iter_mut().zip(gathering.shifts) {
+            *counted += count(max_re, lanes, |value| value + shift < 0.0);
+        }
+        for (counted, watch) in gathering.events.iter_mut().zip(gathering.watches) {
+            let (values, threshold) = (watch.quantity.values(results), watch.threshold);
+            *counted += match watch.below {
+                true => count(&values, lanes, |value| value < threshold),
+                false => count(&values, lanes, |value| value > threshold),
+            };
+        }
+        gathering.max_re.add(max_re, lanes, is_first);
+        for (sums, values) in gathering.components.iter_mut().zip(&results.components) {
+            sums.add(values, lanes, is_first);
+        }
+        let modes = results.growth_rates.iter().zip(&results.angular_frequencies);
+        for (sums, (growth_rate, angular_frequency)) in gathering.modes.iter_mut().zip(modes) {
+            sums.growth_rate.add(growth_rate, lanes, is_first);
+            sums.angular_frequency.add(angular_frequency, lanes, is_first);
+            sums.damping_ratio.add(&damping_ratios(growth_rate, angular_frequency), lanes, is_first);
+            sums.unstable += count(growth_rate, lanes, |value| value >= 0.0);
+        }
+    }
+}
+
+#[inline(always)]
+fn count(values: &Lanes, lanes: usize, holds: impl Fn(f64) -> bool) -> u64 {
+    match lanes {
+        LANES => values.0.iter().map(|&value| u64::from(holds(value))).sum(),
+        _ => values.0[..lanes].iter().map(|&value| u64::from(holds(value))).sum(),
+    }
+}
+
+impl Sums {
+    const NONE: Self = Self {
+        first: [0.0; PARTS],
+        second: [0.0; PARTS],
+        minimum: [f64::INFINITY; PARTS],
+        maximum: [f64::NEG_INFINITY; PARTS],
+        shift: 0.0,
+    };
+
+    #[inline(always)]
+    fn add(&mut self, values: &Lanes, lanes: usize, is_first: bool) {
+        if is_first {
+            self.shift = values.0[..lanes].iter().sum::<f64>() / lanes as f64;
+        }
+        let mut sums = *self;
+        match lanes {
+            LANES => {
+                for row in values.0.as_chunks::<PARTS>().0 {
+                    row.iter().enumerate().for_each(|(part, &value)| sums.add_one(part, value));
+                }
+            }
+            _ => (0..lanes).for_each(|lane| sums.add_one(lane % PARTS, values.0[lane])),
+        }
+        *self = sums;
+    }
+
+    #[inline(always)]
+    fn add_one(&mut self, part: usize, value: f64) {
+        let deviation = value - self.shift;
+        self.first[part] += deviation;
+        self.second[part] = deviation.mul_add(deviation, self.second[part]);
+        self.minimum[part] = if value < self.minimum[part] { value } else { self.minimum[part] };
+        self.maximum[part] = if value > self.maximum[part] { value } else { self.maximum[part] };
+    }
+
+    fn moments(&self, count: u64) -> Moments {
+        let sum = |parts: &[f64; PARTS]| parts.iter().sum::<f64>();
+        // Not f64::min and max, which may choose either of 0 and −0.
+        let minimum = self.minimum.iter().copied().fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+        let maximum = self.maximum.iter().copied().fold(f64::NEG_INFINITY, |a, b| if b > a { b } else { a });
+        Moments::from_sums(count, self.shift, sum(&self.first), sum(&self.second), minimum, maximum)
+    }
+}

@@ -1,0 +1,13 @@
+//! What knows no domain: files that appear whole or not at all, parallel work, progress, instruction sets, hashes.
+
+mod files;
+mod instruction_set;
+mod observer;
+mod parallel;
+mod sha256;
+
+pub use files::{FileError, check_writable, save, save_with};
+pub use instruction_set::InstructionSet;
+pub use observer::{Interrupted, Observer, Silent};
+pub use parallel::{try_map, try_map_waiting};
+pub use sha256::{hexadecimal, sha256, sha256_bytes};

@@ -1,0 +1,96 @@
+//! The uniform law.
+
+use thiserror::Error;
+
+/// Why a distribution's parameters are unusable.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MarginalError {
+    /// A bound is NaN or infinite.
+    #[error("bounds [{lower}, {upper}] must be finite numbers")]
+    NotFinite {
+        /// Lower bound found.
+        lower: f64,
+        /// Upper bound found.
+        upper: f64,
+    },
+    /// The interval is empty.
+    #[error("lower ({lower}) is not below upper ({upper}); swap or widen them")]
+    Inverted {
+        /// Lower bound found.
+        lower: f64,
+        /// Upper bound found.
+        upper: f64,
+    },
+    /// The interval is too narrow for its position, or too wide, to be told apart in double precision.
+    #[error("the interval [{lower}, {upper}] is too narrow or too wide for double precision")]
+    Unresolved {
+        /// Lower bound found.
+        lower: f64,
+        /// Upper bound found.
+        upper: f64,
+    },
+}
+
+/// The uniform distribution on \[lower, upper\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uniform {
+    lower: f64,
+    upper: f64,
+}
+
+impl Uniform {
+    /// The uniform distribution on \[lower, upper\], in the input's own unit.
+    ///
+    /// # Errors
+    ///
+    /// Bounds must be finite and ascending, and far enough apart that 2⁵² points fit between them within rounding.
+    pub fn new(lower: f64, upper: f64) -> Result<Self, MarginalError> {
+        if !(lower.is_finite() && upper.is_finite()) {
+            return Err(MarginalError::NotFinite { lower, upper });
+        }
+        if lower >= upper {
+            return Err(MarginalError::Inverted { lower, upper });
+        }
+        let width = upper - lower;
+        let largest = lower.abs().max(upper.abs());
+        if !width.is_normal() || !width.is_finite() || width < 1e3 * f64::EPSILON * largest {
+            return Err(MarginalError::Unresolved { lower, upper });
+        }
+        Ok(Self { lower, upper })
+    }
+
+    /// Lower bound.
+    pub fn lower(&self) -> f64 {
+        self.lower
+    }
+
+    /// Upper bound.
+    pub fn upper(&self) -> f64 {
+        self.upper
+    }
+
+    /// Middle of the interval.
+    pub fn center(&self) -> f64 {
+        self.lower + 0.5 * (self.upper - self.lower)
+    }
+
+    /// Half the length of the interval.
+    pub fn half_width(&self) -> f64 {
+        0.5 * (self.upper - self.lower)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bad_parameters_are_refused() {
+        assert!(matches!(Uniform::new(1.0, 1.0), Err(MarginalError::Inverted { .. })));
+        assert!(matches!(Uniform::new(2.0, 1.0), Err(MarginalError::Inverted { .. })));
+        assert!(matches!(Uniform::new(f64::NAN, 1.0), Err(MarginalError::NotFinite { .. })));
+        assert!(matches!(Uniform::new(0.0, f64::INFINITY), Err(MarginalError::NotFinite { .. })));
+        assert!(matches!(Uniform::new(1.0, 1.0 + 1e-15), Err(MarginalError::Unresolved { .. })));
+        assert!(matches!(Uniform::new(-1.7e308, 1.7e308), Err(MarginalError::Unresolved { .. })));
+    }
+}

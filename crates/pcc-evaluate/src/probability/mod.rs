@@ -1,0 +1,5 @@
+//! Random numbers, statistics, and the laws of uncertain inputs.
+
+pub mod inputs;
+pub mod random;
+pub mod statistics;

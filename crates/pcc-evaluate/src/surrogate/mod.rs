@@ -1,0 +1,74 @@
+//! The surrogate: an immutable set of expansions with everything needed to use it and to judge it.
+
+mod agreement;
+mod analysis;
+mod evaluate;
+mod records;
+mod sobol;
+
+pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
+pub use analysis::FitQuality;
+pub use records::{
+    Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
+    StopReason, Training,
+};
+pub use sobol::SobolIndices;
+
+use crate::components::{Component, Output};
+use crate::polynomials::Mesh;
+use crate::probability::inputs::InputSpace;
+
+/// A surrogate model of the eigenvalues of a system with uncertain parameters.
+///
+/// Component k is center + scale · Σ_α c_α ψ_α with its expansion in the element that holds the point, at the local variables
+/// there; outputs say how components become eigenvalues. A global expansion has one element, whose local variables are ξ.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surrogate {
+    /// Where it comes from.
+    pub provenance: Provenance,
+    /// The uncertain inputs, in the order of the standardized variables.
+    pub inputs: InputSpace,
+    /// What the components form.
+    pub outputs: Vec<Output>,
+    /// The elements, each with expansions of its own.
+    pub mesh: Mesh,
+    /// For each element in order, one expansion per component, by component id.
+    pub expansions: Vec<Expansion>,
+    /// How it was trained.
+    pub training: Training,
+    /// What is known of its error where stability is decided.
+    pub decision: Decision,
+    /// Points with expected values, to check an evaluator.
+    pub self_test: SelfTest,
+    /// Verified bounds, added after the build.
+    pub certificates: Vec<Certificate>,
+}
+
+impl Surrogate {
+    /// All components in the order of their ids.
+    pub fn components(&self) -> Vec<&Component> {
+        let mut components: Vec<_> = self.outputs.iter().flat_map(|output| &output.components).collect();
+        components.sort_by_key(|component| component.id);
+        components
+    }
+
+    /// Number of components.
+    pub fn component_count(&self) -> usize {
+        self.outputs.iter().map(|output| output.components.len()).sum()
+    }
+
+    /// The expansion of the component with this id in an element.
+    pub fn expansion(&self, element: usize, component: usize) -> &Expansion {
+        &self.expansions[element * self.component_count() + component]
+    }
+
+    /// The expansions of the component with this id, element by element.
+    pub fn expansions_of(&self, component: usize) -> impl Iterator<Item = &Expansion> {
+        self.expansions.iter().skip(component).step_by(self.component_count())
+    }
+
+    /// Frequency ranks of all modes it carries, in the order in which recombination yields them.
+    pub fn modes(&self) -> Vec<usize> {
+        self.outputs.iter().flat_map(|output| output.modes.iter().copied()).collect()
+    }
+}

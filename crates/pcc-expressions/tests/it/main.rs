@@ -1,0 +1,4 @@
+//! Expressions against what they mean, in one program.
+
+mod arithmetic;
+mod random_expressions;

@@ -1,0 +1,223 @@
+//! The binary layout of format 1, read by hand: the layout is ours, not that of a serialisation crate.
+
+use serde_json::{Map, Value, json};
+
+/// Reads little-endian fields in the order in which format 1 lays them out.
+struct Bytes {
+    bytes: Vec<u8>,
+    at: usize,
+}
+
+impl Bytes {
+    fn take<const N: usize>(&mut self) -> [u8; N] {
+        self.at += N;
+        self.bytes[self.at - N..self.at].try_into().unwrap()
+    }
+    fn u16(&mut self) -> u16 {
+        u16::from_le_bytes(self.take())
+    }
+    fn u32(&mut self) -> u32 {
+        u32::from_le_bytes(self.take())
+    }
+    fn u64(&mut self) -> u64 {
+        u64::from_le_bytes(self.take())
+    }
+    fn float(&mut self) -> Value {
+        json!(f64::from_le_bytes(self.take()))
+    }
+    fn text(&mut self) -> Value {
+        let length = self.u64() as usize;
+        self.at += length;
+        json!(std::str::from_utf8(&self.bytes[self.at - length..self.at]).unwrap())
+    }
+    fn list(&mut self, item: impl Fn(&mut Self) -> Value) -> Value {
+        (0..self.u64()).map(|_| item(self)).collect()
+    }
+    fn floats(&mut self) -> Value {
+        self.list(Self::float)
+    }
+    fn option(&mut self, item: impl Fn(&mut Self) -> Value) -> Value {
+        match self.take::<1>() {
+            [0] => Value::Null,
+            [1] => item(self),
+            other => panic!("option tag {other:?}"),
+        }
+    }
+    /// A kind: its number stands for one of `names`.
+    fn kind(&mut self, names: &[&str]) -> Value {
+        json!(names[self.u32() as usize])
+    }
+    fn fields(&mut self, fields: &[Field]) -> Value {
+        let entries: Map<String, Value> = fields.iter().map(|(name, read)| ((*name).to_owned(), read(self))).collect();
+        Value::Object(entries)
+    }
+    fn bounds(&mut self) -> Value {
+        self.fields(&[("lower", &Self::float), ("upper", &Self::float)])
+    }
+    fn tagged(&mut self, name: &str, fields: &[Field]) -> Value {
+        assert_eq!(self.u32(), 0, "only the first kind of {name} is in this file");
+        json!({ name: self.fields(fields) })
+    }
+}
+
+type B = Bytes;
+
+/// A field: its name and how to read it.
+type Field<'a> = (&'a str, &'a dyn Fn(&mut B) -> Value);
+
+fn u16_number(b: &mut B) -> Value {
+    json!(b.u16())
+}
+fn u32_number(b: &mut B) -> Value {
+    json!(b.u32())
+}
+fn u64_number(b: &mut B) -> Value {
+    json!(b.u64())
+}
+
+fn meta(b: &mut B) -> Value {
+    let names = ["tool_version", "study_name", "problem_hash", "study_hash", "content_id"];
+    Value::Object(names.into_iter().map(|name| (name.to_owned(), b.text())).collect())
+}
+
+fn inputs(b: &mut B) -> Value {
+    let interval: [Field; 2] = [("lower", &B::float), ("upper", &B::float)];
+    let affine: [Field; 2] = [("center", &B::float), ("half_width", &B::float)];
+    let input = |b: &mut B| {
+        b.fields(&[
+            ("name", &B::text),
+            ("distribution", &|b| b.tagged("uniform", &interval)),
+            ("transform", &|b| b.tagged("affine", &affine)),
+            ("family", &|b| b.kind(&["legendre"])),
+            ("recurrence", &|b| b.fields(&[("diagonal", &B::floats), ("off_diagonal", &B::floats)])),
+            ("bounds", &|b| b.option(B::bounds)),
+        ])
+    };
+    b.fields(&[("inputs", &|b| b.list(input)), ("dependence", &|b| b.kind(&["independent"]))])
+}
+
+fn outputs(b: &mut B) -> Value {
+    let component =
+        |b: &mut B| b.fields(&[("id", &u32_number), ("name", &B::text), ("center", &B::float), ("scale", &B::float)]);
+    let output = |b: &mut B| {
+        b.fields(&[
+            ("kind", &|b| b.kind(&["eigenvalue", "cluster", "scalar"])),
+            ("modes", &|b| b.list(u32_number)),
+            ("name", &B::text),
+            ("unit", &B::text),
+            ("components", &|b| b.list(component)),
+        ])
+    };
+    b.fields(&[("outputs", &|b| b.list(output))])
+}
+
+fn elements(b: &mut B) -> Value {
+    let side =
+        |b: &mut B| b.fields(&[("bounds", &|b| b.option(B::bounds)), ("center", &B::float), ("half_width", &B::float)]);
+    let element = |b: &mut B| b.fields(&[("weight", &B::float), ("sides", &|b| b.list(side))]);
+    b.fields(&[("elements", &|b| b.list(element)), ("splits", &|b| b.list(|_| panic!("no splits in this file")))])
+}
+
+fn expansions(b: &mut B) -> Value {
+    let expansion = |b: &mut B| {
+        b.fields(&[
+            ("element", &u32_number),
+            ("component", &u32_number),
+            ("index_set", &u32_number),
+            ("coefficients", &B::floats),
+            ("r2", &|b| b.option(B::float)),
+            ("s2", &|b| b.option(B::float)),
+            ("corrected_s2", &|b| b.option(B::float)),
+            ("leave_out", &|b| b.kind(&["row", "run"])),
+            ("degree", &u16_number),
+            ("stop", &|b| b.kind(&["accurate", "highest_degree", "design_exhausted", "constant"])),
+        ])
+    };
+    b.fields(&[("index_sets", &|b| b.list(|b| b.list(|b| b.list(u16_number)))), ("expansions", &|b| b.list(expansion))])
+}
+
+fn training(b: &mut B) -> Value {
+    let value = |b: &mut B| match b.u32() {
+        0 => json!({ "integer": b.u64() }),
+        1 => json!({ "number": b.float() }),
+        2 => json!({ "text": b.text() }),
+        3 => json!({ "flag": b.take::<1>() == [1] }),
+        other => panic!("setting of kind {other}"),
+    };
+    let counts = |b: &mut B| {
+        let names = ["values", "gradients", "failed", "final_mesh", "direct_computations"];
+        Value::Object(names.into_iter().map(|name| (name.to_owned(), json!(b.u64()))).collect())
+    };
+    b.fields(&[
+        ("method", &B::text),
+        ("settings", &|b| b.list(|b| b.fields(&[("key", &B::text), ("value", &value)]))),
+        ("design", &B::text),
+        ("seed", &u64_number),
+        ("levels", &|b| b.list(u64_number)),
+        ("counts", &counts),
+    ])
+}
+
+fn decision(b: &mut B) -> Value {
+    let quantile = |b: &mut B| b.fields(&[("level", &B::float), ("value", &B::float)]);
+    b.fields(&[("max_re_residuals", &|b| b.list(quantile)), ("proportion_error", &|b| b.option(B::float))])
+}
+
+fn self_test(b: &mut B) -> Value {
+    b.fields(&[
+        ("points", &|b| b.list(B::floats)),
+        ("components", &|b| b.list(B::floats)),
+        ("max_re", &B::floats),
+        ("tolerance", &B::float),
+    ])
+}
+
+/// CRC-32 (IEEE 802.3), bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
+    })
+}
+
+#[test]
+fn a_reader_written_from_the_layout_alone_finds_what_json_says() {
+    let file = std::fs::read(crate::support::repository("tests/data/golden.v1.pcc")).unwrap();
+    let mut b = Bytes { bytes: file.clone(), at: 0 };
+    assert_eq!(b.take::<8>(), [0x89, b'P', b'C', b'C', 0x0D, 0x0A, 0x1A, 0x0A]);
+    let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
+    assert_eq!(b.u32(), 1, "codec");
+    assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
+    let sections: [Field; 8] = [
+        ("meta", &meta),
+        ("inputs", &inputs),
+        ("outputs", &outputs),
+        ("elements", &elements),
+        ("expansions", &expansions),
+        ("training", &training),
+        ("decision", &decision),
+        ("self_test", &self_test),
+    ];
+    for (position, (name, read)) in sections.into_iter().enumerate() {
+        assert_eq!([b.u16(), b.u16(), b.u16(), b.u16()], [position as u16 + 1, 1, 1, 0], "header of {name}");
+        let length = b.u64() as usize;
+        let before = b.at;
+        document[name] = read(&mut b);
+        assert_eq!(b.at - before, length, "length of {name}");
+    }
+    assert_eq!(b.u32(), crc32(&file[..file.len() - 4]));
+    assert_eq!(b.at, file.len(), "no trailing bytes");
+
+    let expected: Value = serde_json::from_str(&crate::support::text("tests/data/golden.v1.json")).unwrap();
+    assert_eq!(document, expected);
+}
+
+#[test]
+fn golden_files_are_still_read_and_written_byte_for_byte() {
+    use pcc_evaluate::artifact::{Format, decode, encode};
+    for (name, format) in [("golden.v1.pcc", Format::Binary), ("golden.v1.json", Format::Json)] {
+        let bytes = std::fs::read(crate::support::repository(&format!("tests/data/{name}"))).unwrap();
+        let artifact = decode(&bytes).unwrap();
+        assert_eq!(artifact.version, (1, 0));
+        assert_eq!(encode(&artifact.surrogate, format).unwrap(), bytes);
+    }
+}

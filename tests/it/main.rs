@@ -1,0 +1,24 @@
+//! The tests of the whole, in one program: the library as its users see it, and the command line as they type it.
+
+mod support;
+
+mod certificates;
+mod clusters;
+mod clutch_reference;
+mod command_line;
+mod derivatives;
+mod determinism;
+mod evaluation;
+mod full_expansions;
+mod golden_file;
+mod gradient_fits;
+mod invariants;
+mod kills;
+mod layers;
+mod matrices;
+mod openturns;
+mod programs;
+mod questions;
+mod readme;
+mod shipped;
+mod table2;

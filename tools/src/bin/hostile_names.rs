@@ -1,0 +1,28 @@
+//! Writes a surrogate whose names try to be markup, to check that pages show them as text.
+//!
+//! `cargo run --release --example hostile_names -- OUT.json`
+
+use pcc_evaluate::artifact::{Format, encode, read};
+use pcc_evaluate::foundation::save;
+use pcc_evaluate::probability::inputs::InputSpace;
+use std::error::Error;
+use std::path::Path;
+
+const HOSTILE: &str = "</script><img src=x onerror=alert(1)>";
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let out = std::env::args().nth(1).ok_or("name the file to write")?;
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogates/clutch-r2.pcc");
+    let mut surrogate = read(&shipped)?.surrogate;
+    surrogate.provenance.study_name = HOSTILE.to_owned();
+    let mut inputs = surrogate.inputs.inputs().to_vec();
+    inputs.iter_mut().for_each(|input| input.name.push_str(HOSTILE));
+    surrogate.inputs = InputSpace::new(inputs)?;
+    for output in &mut surrogate.outputs {
+        output.name.push_str(HOSTILE);
+        output.components.iter_mut().for_each(|component| component.name.push_str(HOSTILE));
+    }
+    save(Path::new(&out), &encode(&surrogate, Format::Json)?)?;
+    println!("{out}");
+    Ok(())
+}
