@@ -8,7 +8,7 @@ use pcc::report::{Align, Table};
 use pcc_compile::campaign::Runner;
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::decode;
-use pcc_evaluate::evaluation::{LANES, Lanes, Plan, Question, Sampler, Survey, monte_carlo};
+use pcc_evaluate::evaluation::{BLOCK_POINTS, Lanes, Plan, Question, Sampler, Survey, monte_carlo};
 use pcc_evaluate::foundation::{InstructionSet, Silent};
 use pcc_evaluate::probability::inputs::random_points;
 use pcc_evaluate::probability::random::{Purpose, unit_pairs};
@@ -81,7 +81,7 @@ fn measure(surrogate: &Surrogate, instructions: InstructionSet) -> Parts {
     let plan = Plan::with_instructions(surrogate, instructions);
     let mut workspace = plan.workspace();
     for (j, points) in workspace.points_mut().iter_mut().enumerate() {
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_POINTS {
             points.0[lane] = ((j * 37 + lane * 11) % 64) as f64 / 32.0 - 1.0;
         }
     }
@@ -101,14 +101,14 @@ fn measure(surrogate: &Surrogate, instructions: InstructionSet) -> Parts {
     for _ in 0..if is_slow { 2 } else { ROUNDS } {
         let operations = (steps as usize * CHAINS * 2 * instructions.run(Width)) as f64;
         best.peak = best.peak.max(1e-9 * operations / seconds(|| instructions.run(Peak(steps))));
-        let count = (blocks * LANES) as f64;
+        let count = (blocks * BLOCK_POINTS) as f64;
         let kernel = seconds(|| (0..blocks).for_each(|_| plan.evaluate_components(0, black_box(&mut workspace))));
         best.kernel = best.kernel.min(per_sample(kernel, count));
         let roots = seconds(|| (0..blocks).for_each(|_| plan.evaluate(0, black_box(&mut workspace))));
         best.with_roots = best.with_roots.min(per_sample(roots, count));
         let random = seconds(|| instructions.run(Drawing { points: workspace.points_mut(), blocks }));
         best.random_numbers = best.random_numbers.min(per_sample(random, count));
-        let whole = on_threads(1, || seconds(|| survey.run(0..survey.layout().chunks(), &Silent).expect("finite")));
+        let whole = on_threads(1, || seconds(|| survey.run(0..survey.division().chunks(), &Silent).expect("finite")));
         best.whole = best.whole.min(per_sample(whole, samples as f64));
     }
     best
@@ -128,7 +128,7 @@ impl WithSimd for Drawing<'_> {
         for block in 0..self.blocks {
             for (pair, inputs) in (0u32..).zip(self.points.chunks_exact_mut(2)) {
                 let [even, odd] = inputs else { continue };
-                unit_pairs(1, Purpose::Evaluation, (block * LANES) as u64, pair, &mut even.0, &mut odd.0);
+                unit_pairs(1, Purpose::Evaluation, (block * BLOCK_POINTS) as u64, pair, &mut even.0, &mut odd.0);
             }
             black_box(&mut *self.points);
         }
@@ -190,7 +190,7 @@ fn print_whole(surrogate: &Surrogate, study: &Study) {
         });
         let others = questions.each_ref().map(|question| {
             let survey = Survey::new(surrogate, question, InstructionSet::best()).expect("the question fits");
-            on_threads(all, || seconds(|| survey.run(0..survey.layout().chunks(), &Silent)))
+            on_threads(all, || seconds(|| survey.run(0..survey.division().chunks(), &Silent)))
         });
         let count = (2 * SAMPLES) as f64;
         let times = [

@@ -6,7 +6,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pcc_compile::campaign::Runner;
 use pcc_compile::fitting::design::NestedLatinHypercube;
-use pcc_compile::fitting::fit::minimum_norm::{self, Learnt};
+use pcc_compile::fitting::fit::minimum_norm::{self, Previous};
 use pcc_compile::fitting::fit::stepwise;
 use pcc_compile::fitting::regression::{BasisTables, Response};
 use pcc_compile::study::{FitMethod, Smooth, Study};
@@ -82,7 +82,7 @@ fn fit(criterion: &mut Criterion) {
                         &tables,
                         response,
                         &smooth,
-                        &Learnt::nothing(INPUTS),
+                        &Previous::nothing(INPUTS),
                         &Silent,
                     ))),
                 });

@@ -1,8 +1,8 @@
 //! The answer of `eval` and `reference`: stability and what engineers read of each mode.
 
 use super::build::FitReport;
+use super::confidence::Confidence;
 use super::sensitivity::{CriticalReport, SensitivityReport};
-use super::sureness::Sureness;
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
 use super::table::count;
 use pcc_evaluate::components::{ModeSummary, Output, Summary};
@@ -50,7 +50,7 @@ pub struct EvalReport {
     pub standard_error: f64,
     /// How sure that is.
     #[serde(flatten)]
-    pub sureness: Sureness,
+    pub confidence: Confidence,
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Statistics,
     /// What engineers read, per mode.
@@ -185,10 +185,10 @@ impl EvalReport {
         report.merged_parts = merged_parts;
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
-        report.sureness = Sureness::new(surrogate, stable, summary.stable_if_shifted, share.interval);
-        report.sureness.replicates = cell.replicates.len().max(1) as u64;
+        report.confidence = Confidence::new(surrogate, stable, summary.stable_if_shifted, share.interval);
+        report.confidence.replicates = cell.replicates.len().max(1) as u64;
         if !is_whole {
-            report.sureness.confine();
+            report.confidence.confine();
         }
         let free = |name: &&str| !question.conditions.iter().any(|c| c.input == *name && c.lower == c.upper);
         report.sensitivity = indices.map(|indices| {
@@ -244,7 +244,7 @@ impl EvalReport {
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
             standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
-            sureness: Sureness {
+            confidence: Confidence {
                 interval: stable.wilson(LEVEL),
                 samples: stable.samples,
                 replicates: 1,

@@ -45,17 +45,17 @@ impl fmt::Display for EvalReport {
         writeln!(f, "  stable                 {}   judged by {judged_by}", percent(self.stable_proportion))?;
         match self.source {
             "model" => {
-                let Interval { lower, upper, level } = self.sureness.interval;
+                let Interval { lower, upper, level } = self.confidence.interval;
                 let range = format!("{} to {}", percent(lower), percent(upper));
                 writeln!(f, "  sampling interval      {range}   {:.0} %", 100.0 * level)?;
             }
-            _ => write!(f, "{}", self.sureness)?,
+            _ => write!(f, "{}", self.confidence)?,
         }
         write!(f, "{}", events_text(&self.events))?;
         writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
         if let Some((low, high)) = self.central_residuals() {
             let [low, high] = [low, high].map(|value| significant(value, 3));
-            let place = if self.sureness.is_confined { " in all of the domain" } else { "" };
+            let place = if self.confidence.is_confined { " in all of the domain" } else { "" };
             writeln!(
                 f,
                 "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out{place}"

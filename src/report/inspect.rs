@@ -2,7 +2,7 @@
 
 use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
-use super::sureness::{error_text, is_of_modes_left_out};
+use super::confidence::{error_text, is_of_modes_left_out};
 use super::table::{Align, Table, count, significant};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};

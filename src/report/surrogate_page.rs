@@ -59,7 +59,7 @@ impl SurrogatePage<'_> {
     fn answer(&self, page: &mut Page) {
         let eval = self.eval;
         page.lead(&format!("Stable in {:.3} % of cases.", 100.0 * eval.stable_proportion));
-        page.facts(&eval.sureness.facts());
+        page.facts(&eval.confidence.facts());
         eval.warnings.iter().for_each(|warning| page.warning(warning));
         if let Some(Validation { compare, .. }) = &self.validation {
             let checked = format!(

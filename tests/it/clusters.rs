@@ -5,7 +5,7 @@ use crate::support::text;
 use nalgebra::Complex;
 use pcc_compile::fitting::design::Samples;
 use pcc_compile::fitting::fit::Fitted;
-use pcc_compile::fitting::fit::minimum_norm::{self, Learnt};
+use pcc_compile::fitting::fit::minimum_norm::{self, Previous};
 use pcc_compile::fitting::regression::{BasisTables, Response};
 use pcc_compile::mechanics::spectrum::{Spectrum, Target, components};
 use pcc_compile::study::Smooth;
@@ -47,7 +47,7 @@ fn fit(design: &Set, outputs: &[Output]) -> Vec<Fitted> {
         .map(|id| {
             let of_component: Vec<f64> = values.iter().map(|row| row[id]).collect();
             let response = Response::of(&of_component, 0.0);
-            minimum_norm::fit(&tables, response, &settings, &Learnt::nothing(INPUTS), &Silent).unwrap().0
+            minimum_norm::fit(&tables, response, &settings, &Previous::nothing(INPUTS), &Silent).unwrap().0
         })
         .collect()
 }

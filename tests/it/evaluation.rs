@@ -5,7 +5,7 @@ use pcc_compile::compilation::build;
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::read;
 use pcc_evaluate::evaluation::{
-    Bins, Condition, Event, Findings, Lanes, Plan, Progress, Question, Sampler, Survey, Sweep, evaluate_points,
+    Bins, Condition, Event, Findings, Lanes, Plan, Question, Sampler, Survey, Surveyed, Sweep, evaluate_points,
     monte_carlo,
 };
 use pcc_evaluate::foundation::{InstructionSet, Silent};
@@ -33,13 +33,13 @@ fn findings(surrogate: &Surrogate, question: &Question, instructions: Instructio
     let survey = Survey::new(surrogate, question, instructions).unwrap();
     let mut all: Option<Findings> = None;
     for shard in 0..shards {
-        let found = match survey.run(survey.layout().shard(shard, shards), &Silent).unwrap() {
-            Progress::Complete(found) => found,
-            Progress::Interrupted(_) => panic!("nobody interrupts"),
+        let found = match survey.run(survey.division().shard(shard, shards), &Silent).unwrap() {
+            Surveyed::Complete(found) => found,
+            Surveyed::Interrupted(_) => panic!("nobody interrupts"),
         };
         match &mut all {
             None => all = Some(found),
-            Some(all) => assert!(all.append(found, survey.layout())),
+            Some(all) => assert!(all.append(found, survey.division())),
         }
     }
     all.unwrap()
@@ -156,7 +156,7 @@ fn root_mean_square_error(surrogate: &Surrogate, sampler: Sampler, points: u64, 
     let question = Question { sampler, replicates: 20, ..Question::plain(20 * points, 1) };
     let survey = Survey::new(surrogate, &question, InstructionSet::best()).unwrap();
     let found = findings(surrogate, &question, InstructionSet::best(), 1);
-    let cell = &found.answer(survey.layout()).cells[0];
+    let cell = &found.answer(survey.division()).cells[0];
     let squares = cell.replicates.iter().map(|tally| {
         let proportion = Proportion { hits: tally.summary.stable, samples: tally.summary.samples() };
         assert_eq!(proportion.samples, points);
@@ -173,7 +173,7 @@ fn sobol_points_have_a_fifth_of_the_error_of_monte_carlo() {
     let question = Question { sampler: Sampler::Sobol, replicates: 8, ..Question::plain(8 << 20, 99) };
     let found = findings(&surrogate, &question, InstructionSet::best(), 1);
     let survey = Survey::new(&surrogate, &question, InstructionSet::best()).unwrap();
-    let truth = found.answer(survey.layout()).cells[0].share(0.95, |tally| tally.summary.stable);
+    let truth = found.answer(survey.division()).cells[0].share(0.95, |tally| tally.summary.stable);
     let monte_carlo = (truth.value * (1.0 - truth.value) / POINTS as f64).sqrt();
     assert!(truth.standard_error < 0.02 * monte_carlo, "{truth:?}");
     let sobol = root_mean_square_error(&surrogate, Sampler::Sobol, POINTS, truth.value);
@@ -221,7 +221,7 @@ fn points_of_a_sweep_are_fixed_inputs() {
     ];
     let question = Question { sweeps: sweeps.clone(), ..Question::plain(5000, 1) };
     let survey = Survey::new(&surrogate, &question, InstructionSet::best()).unwrap();
-    let answer = findings(&surrogate, &question, InstructionSet::best(), 1).answer(survey.layout());
+    let answer = findings(&surrogate, &question, InstructionSet::best(), 1).answer(survey.division());
     assert_eq!(answer.cells.len(), 18);
     for (number, cell) in answer.cells.iter().enumerate() {
         let fixed = |sweep: &Sweep, number: usize| {
@@ -249,7 +249,7 @@ fn events_and_histograms_count_what_is_there() {
         ..Question::plain(count, seed)
     };
     let survey = Survey::new(&surrogate, &question, InstructionSet::best()).unwrap();
-    let answer = findings(&surrogate, &question, InstructionSet::best(), 1).answer(survey.layout());
+    let answer = findings(&surrogate, &question, InstructionSet::best(), 1).answer(survey.division());
     let how_many = |holds: &dyn Fn(f64) -> bool| max_re.iter().filter(|&&value| holds(value)).count() as u64;
     assert_eq!(answer.cells[0].total.events, [how_many(&|value| value < -0.2), how_many(&|value| value > 10.0)]);
     let histogram = &answer.histograms[0];

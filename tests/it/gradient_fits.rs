@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use pcc_compile::fitting::design::{NestedLatinHypercube, Samples};
 use pcc_compile::fitting::fit::Fitted;
-use pcc_compile::fitting::fit::minimum_norm::{self, Learnt};
+use pcc_compile::fitting::fit::minimum_norm::{self, Previous};
 use pcc_compile::fitting::fit::omp::{self, Candidates};
 use pcc_compile::fitting::fit::stepwise::{self, Outcome};
 use pcc_compile::fitting::regression::{ActiveBasis, BasisTables, Equations, Gradients, Response};
@@ -140,7 +140,7 @@ proptest! {
         let coefficients = coefficients(terms.len(), seed);
         let answers = Answers::of(&tables, &all_points(&samples), &terms, &coefficients);
         let settings = Smooth { max_degree: degree, s2_target: 0.999 };
-        let (fitted, _) = minimum_norm::fit(&tables, answers.response(), &settings, &Learnt::nothing(inputs), &Silent).unwrap();
+        let (fitted, _) = minimum_norm::fit(&tables, answers.response(), &settings, &Previous::nothing(inputs), &Silent).unwrap();
         let difference = largest_difference(&terms, &coefficients, &fitted.indices, &fitted.coefficients);
         // ν keeps the equations from being met exactly.
         prop_assert!(difference < 1e-4, "{}", difference);
@@ -207,7 +207,7 @@ fn error(fitted: &Fitted) -> f64 {
 const SETTINGS: Smooth = Smooth { max_degree: 8, s2_target: 0.999 };
 
 fn by_minimum_norm(tables: &BasisTables, response: Response<'_>) -> Fitted {
-    minimum_norm::fit(tables, response, &SETTINGS, &Learnt::nothing(3), &Silent).unwrap().0
+    minimum_norm::fit(tables, response, &SETTINGS, &Previous::nothing(3), &Silent).unwrap().0
 }
 
 fn by_pursuit(tables: &BasisTables, response: Response<'_>) -> Fitted {

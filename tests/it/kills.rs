@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use crate::support::command::output;
-use pcc_compile::campaign::journal::{Contents, Journal, Outcome};
+use pcc_compile::campaign::journal::{Contents, Journal, RunOutcome};
 use std::collections::HashSet;
 use std::fs;
 use std::path::Path;
@@ -59,7 +59,7 @@ fn start(folder: &Path) -> Child {
 
 /// Points whose answers are recorded, by the text in which the program is given them.
 fn acknowledged(contents: &Contents) -> HashSet<String> {
-    let answered = contents.records.iter().filter(|record| matches!(record.outcome, Outcome::Answered(_)));
+    let answered = contents.records.iter().filter(|record| matches!(record.outcome, RunOutcome::Answered(_)));
     answered.map(|record| key(record.point[0], record.point[1])).collect()
 }
 
@@ -120,7 +120,7 @@ fn killed_builds_and_programs_lose_and_repeat_nothing() {
         // Programs of a killed build go on; they have begun, and end, before the next build is judged.
         sleep(Duration::from_millis(30));
     }
-    let failures = read().records.iter().filter(|record| matches!(record.outcome, Outcome::Failed { .. })).count();
+    let failures = read().records.iter().filter(|record| matches!(record.outcome, RunOutcome::Failed { .. })).count();
     println!("{killed_builds} builds and {killed_programs} programs killed, {failures} failures recorded");
     assert!(failures >= killed_programs && killed_programs >= 10);
     starts.push((started(path).len(), acknowledged(&read())));

@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use crate::support::command::{output, pcc, refusal};
-use pcc_compile::campaign::journal::{Journal, Outcome};
+use pcc_compile::campaign::journal::{Journal, RunOutcome};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -146,7 +146,7 @@ fn failures_are_reported_recorded_and_resumed() {
         // The failed run is in the journal with its point, and so are those before it.
         let records = Journal::read(&folder.path().join("program.journal")).unwrap().records;
         let (failed, answered): (Vec<_>, Vec<_>) =
-            records.iter().partition(|record| matches!(record.outcome, Outcome::Failed { .. }));
+            records.iter().partition(|record| matches!(record.outcome, RunOutcome::Failed { .. }));
         assert_eq!(failed.len(), 1, "{name}");
         assert!(failed[0].point[0] >= 0.3 && !answered.is_empty(), "{name}");
 

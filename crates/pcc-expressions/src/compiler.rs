@@ -4,7 +4,7 @@ use super::derivative::derivatives;
 use super::error::{ExpressionError, Fault, TextError};
 use super::excerpt::excerpt;
 use super::graph::{Graph, Id, Node};
-use super::layout::layout;
+use super::listing::layout;
 use super::name;
 use super::parser::{Item, parse};
 use super::program::{Derivative, Program};

@@ -40,7 +40,7 @@
 //!
 //! Text becomes lexemes (`lexer`), checked for depth (`nesting`) and put into postfix order (`parser`); the
 //! [`Compiler`] gives names their meaning and builds a graph without duplicates (`graph`, `simplify`); `derivative`
-//! adds the derivatives; `layout` lists what is needed as a [`Program`]. Only [`winnow`]'s Pratt parser recurses, to a
+//! adds the derivatives; `listing` lists what is needed as a [`Program`]. Only [`winnow`]'s Pratt parser recurses, to a
 //! limited depth.
 //!
 //! # Examples
@@ -67,8 +67,8 @@ mod derivative;
 mod error;
 mod excerpt;
 mod graph;
-mod layout;
 mod lexer;
+mod listing;
 mod name;
 mod nesting;
 mod operation;

@@ -7,9 +7,9 @@ use super::{interruptible, keep_inputs, keep_results, read_study};
 use crate::report::DesignReport;
 use anyhow::bail;
 use pcc_compile::campaign::journal::{Contents, Journal};
-use pcc_compile::campaign::{Asked, Campaign, Ledger, RunError};
+use pcc_compile::campaign::{Campaign, DesignPoint, Ledger, RunError};
 use pcc_compile::compilation::{BuildError, build};
-use pcc_compile::mechanics::model::program::results_table::write_points;
+use pcc_compile::mechanics::model::command::results_table::write_points;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::{check_writable, save_with};
 use std::io;
@@ -49,7 +49,7 @@ pub(in super::super) fn design(context: &Context, options: &Design) -> anyhow::R
 /// How far a build has come.
 pub(super) struct Step {
     /// Every point it asked for.
-    pub asked: Vec<Asked>,
+    pub asked: Vec<DesignPoint>,
     /// What stopped it.
     pub stage: Stage,
 }

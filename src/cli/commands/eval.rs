@@ -8,7 +8,7 @@ use super::{PointsReport, interruptible, keep_inputs, keep_results, keep_unmarke
 use crate::report::{Asked, EvalReport, PartReport, SweepReport, sweep_chart};
 use anyhow::{Context as _, bail};
 use pcc_evaluate::evaluation::{
-    Answer, EvalError, Findings, Pilot, PilotError, Plan, Progress, Quantity, Question, Sampler, Survey, SurveyError,
+    Answer, EvalError, Findings, Pilot, PilotError, Plan, Quantity, Question, Sampler, Survey, SurveyError, Surveyed,
     critical_values_in, evaluate_points, sensitivities_in,
 };
 use pcc_evaluate::foundation::{InstructionSet, Interrupted, check_writable, save};
@@ -68,9 +68,9 @@ pub(super) fn sample(context: &Context, surrogate: &Surrogate, samples: u64, see
 fn answer(context: &Context, survey: &Survey<'_>, surrogate: &Surrogate) -> anyhow::Result<(Answer, f64)> {
     let start = Instant::now();
     let progress =
-        survey.run(0..survey.layout().chunks(), &context.terminal).map_err(|error| failed(error, surrogate))?;
-    let (Progress::Complete(findings) | Progress::Interrupted(findings)) = progress;
-    Ok((findings.answer(survey.layout()), start.elapsed().as_secs_f64()))
+        survey.run(0..survey.division().chunks(), &context.terminal).map_err(|error| failed(error, surrogate))?;
+    let (Surveyed::Complete(findings) | Surveyed::Interrupted(findings)) = progress;
+    Ok((findings.answer(survey.division()), start.elapsed().as_secs_f64()))
 }
 
 /// Prints an answer, and writes its pictures if it is complete.
@@ -197,10 +197,10 @@ fn write_part(
     check_writable(file)?;
     let shard = shard.unwrap_or(Shard { number: 0, of: 1 });
     let start = Instant::now();
-    let chunks = survey.layout().shard(shard.number, shard.of);
+    let chunks = survey.division().shard(shard.number, shard.of);
     let findings = survey.run(chunks, &context.terminal).map_err(|error| failed(error, surrogate))?;
-    let Progress::Complete(findings) = findings else { return Err(Interrupted.into()) };
-    let samples = survey.layout().samples_in(&findings.chunks());
+    let Surveyed::Complete(findings) = findings else { return Err(Interrupted.into()) };
+    let samples = survey.division().samples_in(&findings.chunks());
     let stable = stable(&findings);
     let part = Part { surrogate: surrogate.clone(), question: question.clone(), findings };
     save(file, &part.to_bytes()?)?;

@@ -7,9 +7,9 @@ use super::design::{Stage, refuse_derivatives, step};
 use super::read_study;
 use crate::report::IngestReport;
 use anyhow::{Context as _, anyhow, bail};
-use pcc_compile::campaign::journal::{Journal, Outcome};
-use pcc_compile::campaign::{Ledger, RowProblem, harvest};
-use pcc_compile::mechanics::model::program::results_table::read_results;
+use pcc_compile::campaign::journal::{Journal, RunOutcome};
+use pcc_compile::campaign::{Ledger, RowProblem, match_answers};
+use pcc_compile::mechanics::model::command::results_table::read_results;
 use std::fs::File;
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::R
     let known = Ledger::blank(&study).knowing(&contents);
     let before = step(context, &study, &contents, &source)?;
     let outcome = |point: &[f64]| known.find(point).cloned();
-    let found = harvest(&study, &before.asked, outcome, &rows, options.replace)
+    let found = match_answers(&study, &before.asked, outcome, &rows, options.replace)
         .map_err(|problems| refusal(&options.results, &problems))?;
     // What would end the build must not get into the journal, where it could not be taken back.
     contents.records.extend(found.records.iter().cloned());
@@ -52,7 +52,7 @@ pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::R
         return Err(error.context(format!("{shown}: with these answers the build cannot go on, so none was taken")));
     }
     journal.append(&found.records.iter().collect::<Vec<_>>())?;
-    let failed = found.records.iter().filter(|record| matches!(record.outcome, Outcome::Failed { .. })).count();
+    let failed = found.records.iter().filter(|record| matches!(record.outcome, RunOutcome::Failed { .. })).count();
     let answered = found.records.len() - failed;
     let missing = after.asked.iter().filter(|asked| !asked.is_known).count() as u64;
     context.print(&IngestReport {

@@ -6,7 +6,7 @@ use super::super::{Context, Ending};
 use super::{keep_inputs, keep_results, read_study};
 use crate::report::{JournalModel, JournalReport};
 use anyhow::bail;
-use pcc_compile::campaign::journal::{Contents, Journal, Outcome, Record};
+use pcc_compile::campaign::journal::{Contents, Journal, Record, RunOutcome};
 use pcc_evaluate::foundation::{hexadecimal, save_with};
 use std::io::{self, Write};
 
@@ -58,8 +58,8 @@ fn models(records: &[Record]) -> Vec<JournalModel> {
         });
         let model = &mut models[at];
         match record.outcome {
-            Outcome::Answered(_) => model.answered += 1,
-            Outcome::Failed { .. } => model.failed += 1,
+            RunOutcome::Answered(_) => model.answered += 1,
+            RunOutcome::Failed { .. } => model.failed += 1,
         }
         model.seconds += record.seconds;
     }
@@ -69,8 +69,8 @@ fn models(records: &[Record]) -> Vec<JournalModel> {
 /// One row per record: its number, the model, how it ended, its inputs and its eigenvalues, numbers to the last bit.
 fn export(writer: &mut dyn Write, inputs: &[String], records: &[Record]) -> io::Result<()> {
     let count = |record: &Record| match &record.outcome {
-        Outcome::Answered(computation) => computation.eigenvalues.len(),
-        Outcome::Failed { .. } => 0,
+        RunOutcome::Answered(computation) => computation.eigenvalues.len(),
+        RunOutcome::Failed { .. } => 0,
     };
     let eigenvalues = records.iter().map(count).max().unwrap_or(0);
     let mut table = csv::Writer::from_writer(writer);
@@ -81,8 +81,8 @@ fn export(writer: &mut dyn Write, inputs: &[String], records: &[Record]) -> io::
     table.write_record(&header)?;
     for (number, record) in (1..).zip(records) {
         let (status, attempts, lambdas, error) = match &record.outcome {
-            Outcome::Answered(computation) => ("answered", 1, &computation.eigenvalues[..], ""),
-            Outcome::Failed { attempts, cause, .. } => ("failed", *attempts, &[][..], cause.as_str()),
+            RunOutcome::Answered(computation) => ("answered", 1, &computation.eigenvalues[..], ""),
+            RunOutcome::Failed { attempts, cause, .. } => ("failed", *attempts, &[][..], cause.as_str()),
         };
         let (model, seconds) = (hexadecimal(&record.model), record.seconds);
         let mut row: Vec<String> =

@@ -22,7 +22,7 @@ pub(in super::super) fn merge(context: &Context, options: &Merge) -> anyhow::Res
     }
     let whole = merge_parts(parts)?;
     let survey = whole.survey()?;
-    let (found, all) = (whole.findings.chunks(), survey.layout().chunks());
+    let (found, all) = (whole.findings.chunks(), survey.division().chunks());
     let is_complete = found == (0..all);
     if let Some(file) = &options.part {
         keep_inputs(file, &files)?;
@@ -44,15 +44,15 @@ pub(in super::super) fn merge(context: &Context, options: &Merge) -> anyhow::Res
             context.print(&MergeReport {
                 file: file.display().to_string(),
                 parts: files.len(),
-                samples: survey.layout().samples_in(&found),
-                of: survey.layout().samples(),
+                samples: survey.division().samples_in(&found),
+                of: survey.division().samples(),
                 stable_samples: stable(&whole.findings),
             })?;
             return Ok(Ending::Done);
         }
         context.say(&format!("written to {}", file.display()));
     }
-    let answer = whole.findings.answer(survey.layout());
+    let answer = whole.findings.answer(survey.division());
     let asked = Asked {
         surrogate: &whole.surrogate,
         question: &whole.question,

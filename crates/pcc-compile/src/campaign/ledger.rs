@@ -1,6 +1,6 @@
 //! The books of model runs: what is known already, what is recorded, and which points were asked for.
 
-use crate::campaign::journal::{Contents, HASH_BYTES, Journal, JournalError, Outcome, Record};
+use crate::campaign::journal::{Contents, HASH_BYTES, Journal, JournalError, Record, RunOutcome};
 use crate::study::Study;
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -20,7 +20,7 @@ enum Unknown {
 
 /// A point the design asked for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Asked {
+pub struct DesignPoint {
     /// The inputs, in physical units.
     pub point: Vec<f64>,
     /// Whether its answer, or its failure if the study skips those, is known.
@@ -41,7 +41,7 @@ pub struct Failure {
 pub struct Ledger {
     model: [u8; HASH_BYTES],
     /// By the bits of the inputs: the best that was recorded of each point, and of equals the last.
-    known: HashMap<Vec<u64>, Outcome>,
+    known: HashMap<Vec<u64>, RunOutcome>,
     unknown: Unknown,
     journal: Option<Journal>,
     /// Whether runs go on if they cannot be recorded, because nobody asked for a journal.
@@ -54,7 +54,7 @@ pub struct Ledger {
 /// What changes while models run.
 #[derive(Debug)]
 struct Pages {
-    asked: Vec<Asked>,
+    asked: Vec<DesignPoint>,
     failures: Vec<Failure>,
     reused: u64,
     recorded: u64,
@@ -143,7 +143,7 @@ impl Ledger {
     }
 
     /// What is known of a point.
-    pub fn find(&self, point: &[f64]) -> Option<&Outcome> {
+    pub fn find(&self, point: &[f64]) -> Option<&RunOutcome> {
         self.known.get(&bits(point))
     }
 
@@ -153,7 +153,7 @@ impl Ledger {
     }
 
     /// Every point asked for so far, in the order of the design, if the model is not run.
-    pub fn asked(&self) -> Vec<Asked> {
+    pub fn asked(&self) -> Vec<DesignPoint> {
         self.pages().asked.clone()
     }
 
@@ -184,7 +184,7 @@ impl Ledger {
             let is_known = is_known(i);
             pages.reused += u64::from(is_known);
             if !self.may_run() {
-                pages.asked.push(Asked { point: point.clone(), is_known });
+                pages.asked.push(DesignPoint { point: point.clone(), is_known });
             }
         }
     }
@@ -198,7 +198,7 @@ impl Ledger {
     pub(super) fn record(
         &self,
         point: &[f64],
-        outcome: impl FnOnce() -> Outcome,
+        outcome: impl FnOnce() -> RunOutcome,
         duration: Duration,
         at_once: bool,
     ) -> Result<(), JournalError> {
@@ -237,10 +237,10 @@ impl Ledger {
 }
 
 /// What says more of a point stands higher.
-fn rank(outcome: &Outcome) -> u8 {
+fn rank(outcome: &RunOutcome) -> u8 {
     match outcome {
-        Outcome::Failed { .. } => 0,
-        Outcome::Answered(computation) => 1 + u8::from(computation.reduction.is_some()),
+        RunOutcome::Failed { .. } => 0,
+        RunOutcome::Answered(computation) => 1 + u8::from(computation.reduction.is_some()),
     }
 }
 

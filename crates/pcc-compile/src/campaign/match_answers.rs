@@ -1,8 +1,8 @@
 //! Answers that others computed: rows of a table become records of a journal.
 
-use super::ledger::{Asked, bits};
-use crate::campaign::journal::{HASH_BYTES, Outcome, Record};
-use crate::mechanics::model::program::results_table::ResultRow;
+use super::ledger::{DesignPoint, bits};
+use crate::campaign::journal::{HASH_BYTES, Record, RunOutcome};
+use crate::mechanics::model::command::results_table::ResultRow;
 use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError};
 use crate::study::Study;
 use nalgebra::Complex;
@@ -88,7 +88,7 @@ pub enum RowProblem {
 
 /// What a table of results brings.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Harvest {
+pub struct MatchedAnswers {
     /// Runs that were not known.
     pub records: Vec<Record>,
     /// Rows that say what is known already.
@@ -105,16 +105,16 @@ pub struct Harvest {
 /// # Errors
 ///
 /// All rows that cannot be taken; then none is.
-pub fn harvest(
+pub fn match_answers(
     study: &Study,
-    asked: &[Asked],
-    known: impl Fn(&[f64]) -> Option<Outcome>,
+    asked: &[DesignPoint],
+    known: impl Fn(&[f64]) -> Option<RunOutcome>,
     rows: &[ResultRow],
     replaces: bool,
-) -> Result<Harvest, Vec<RowProblem>> {
+) -> Result<MatchedAnswers, Vec<RowProblem>> {
     let by_bits: HashMap<Vec<u64>, usize> = (0..asked.len()).map(|i| (bits(&asked[i].point), i)).collect();
-    let mut outcomes: HashMap<usize, Outcome> = HashMap::new();
-    let (mut harvest, mut problems) = (Harvest { records: Vec::new(), repeated: 0 }, Vec::new());
+    let mut outcomes: HashMap<usize, RunOutcome> = HashMap::new();
+    let (mut match_answers, mut problems) = (MatchedAnswers { records: Vec::new(), repeated: 0 }, Vec::new());
     let model: [u8; HASH_BYTES] = study.model_hash();
     for row in rows {
         let i = match find(study, asked, &by_bits, row) {
@@ -132,38 +132,38 @@ pub fn harvest(
                     problems.push(RowProblem::Spectrum { line, run, cause });
                     continue;
                 }
-                Outcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reduction: None })
+                RunOutcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reduction: None })
             }
-            Err(cause) => Outcome::Failed { attempts: 1, cause: cause.clone(), by_circumstances: false },
+            Err(cause) => RunOutcome::Failed { attempts: 1, cause: cause.clone(), by_circumstances: false },
         };
         let before = outcomes.get(&i).cloned().or_else(|| known(point));
         match (&before, &outcome) {
-            (Some(Outcome::Answered(before)), Outcome::Answered(now)) => {
+            (Some(RunOutcome::Answered(before)), RunOutcome::Answered(now)) => {
                 let (difference, scale) = difference(&before.eigenvalues, &now.eigenvalues);
                 match (difference > ANSWER_TOLERANCE * scale, replaces) {
-                    (false, _) => harvest.repeated += 1,
+                    (false, _) => match_answers.repeated += 1,
                     (true, false) => problems.push(RowProblem::Contradiction { line, run, difference }),
                     (true, true) => {
                         outcomes.insert(i, outcome.clone());
-                        harvest.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+                        match_answers.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
                     }
                 }
             }
-            (Some(Outcome::Answered(_)), Outcome::Failed { .. }) => harvest.repeated += 1,
-            (Some(before), now) if before == now => harvest.repeated += 1,
+            (Some(RunOutcome::Answered(_)), RunOutcome::Failed { .. }) => match_answers.repeated += 1,
+            (Some(before), now) if before == now => match_answers.repeated += 1,
             _ => {
                 outcomes.insert(i, outcome.clone());
-                harvest.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+                match_answers.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
             }
         }
     }
-    if problems.is_empty() { Ok(harvest) } else { Err(problems) }
+    if problems.is_empty() { Ok(match_answers) } else { Err(problems) }
 }
 
 /// The run a row belongs to.
 fn find(
     study: &Study,
-    asked: &[Asked],
+    asked: &[DesignPoint],
     by_bits: &HashMap<Vec<u64>, usize>,
     row: &ResultRow,
 ) -> Result<usize, RowProblem> {

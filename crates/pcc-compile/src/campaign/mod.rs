@@ -5,6 +5,6 @@ mod ledger;
 mod match_answers;
 mod run;
 
-pub use ledger::{Asked, Campaign, Failure, Ledger};
-pub use match_answers::{Harvest, RowProblem, harvest};
+pub use ledger::{Campaign, DesignPoint, Failure, Ledger};
+pub use match_answers::{MatchedAnswers, RowProblem, match_answers};
 pub use run::{Run, RunError, Runner};

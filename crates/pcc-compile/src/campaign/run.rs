@@ -1,7 +1,7 @@
 //! Direct computations at points of the input space, with errors that name the point.
 
 use super::ledger::{Campaign, Ledger};
-use crate::campaign::journal::{JournalError, Outcome};
+use crate::campaign::journal::{JournalError, RunOutcome};
 use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
 use crate::mechanics::spectrum::{Computation, ReducedSystem, Reduction, Spectrum, SpectrumError};
 use crate::numerics::eigenvalues::SchurForm;
@@ -208,10 +208,10 @@ impl<'a> Runner<'a> {
     fn known(&self, point: &[f64], skips: bool) -> Result<Option<Ending>, RunError> {
         let Some(ledger) = self.ledger else { return Ok(None) };
         match ledger.find(point) {
-            Some(Outcome::Answered(computation)) if self.suffices(computation) => {
+            Some(RunOutcome::Answered(computation)) if self.suffices(computation) => {
                 self.answer(point, computation.clone()).map(|answer| Some(Ok(answer)))
             }
-            Some(Outcome::Failed { cause, by_circumstances, .. }) if skips && ledger.may_skip(*by_circumstances) => {
+            Some(RunOutcome::Failed { cause, by_circumstances, .. }) if skips && ledger.may_skip(*by_circumstances) => {
                 Ok(Some(Err(cause.clone())))
             }
             _ => Ok(None),
@@ -286,8 +286,8 @@ impl<'a> Runner<'a> {
         observer: &dyn Observer,
     ) -> Result<Ending, RunError> {
         let outcome = || match &result {
-            Ok(computation) => Outcome::Answered(computation.clone()),
-            Err(cause) => Outcome::Failed {
+            Ok(computation) => RunOutcome::Answered(computation.clone()),
+            Err(cause) => RunOutcome::Failed {
                 attempts: cause.attempts(),
                 cause: cause.to_string(),
                 by_circumstances: cause.is_by_circumstances(),

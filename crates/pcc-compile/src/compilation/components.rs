@@ -1,7 +1,7 @@
 //! The study's fitting method on all components of a design.
 
 use crate::fitting::design::Samples;
-use crate::fitting::fit::auto::{self, Memory};
+use crate::fitting::fit::auto::{self, Previous};
 use crate::fitting::fit::omp::{self, Candidates};
 use crate::fitting::fit::stepwise::{self, Outcome};
 use crate::fitting::fit::{Fitted, gpc, minimum_norm};
@@ -17,12 +17,12 @@ pub(super) struct ComponentResult {
     pub solver: &'static str,
 }
 
-/// The method with what it has learnt of each component on smaller designs.
+/// The method with what it has found of each component on smaller designs.
 pub(super) struct ComponentFit<'a> {
     study: &'a Study,
     recurrences: Vec<Recurrence>,
     solver: Solver<'a>,
-    memories: Vec<Memory>,
+    previous: Vec<Previous>,
 }
 
 /// A method with its settings and the candidate terms it takes.
@@ -56,13 +56,13 @@ impl<'a> ComponentFit<'a> {
         };
         let recurrences =
             study.inputs.inputs().iter().map(|input| input.marginal.family().recurrence(degree)).collect();
-        Ok(Self { study, recurrences, solver, memories: Vec::new() })
+        Ok(Self { study, recurrences, solver, previous: Vec::new() })
     }
 
     /// Starts anew, because the components are now those of `outputs`.
     pub fn forget(&mut self, outputs: &[Output]) {
         let count = outputs.iter().map(|output| output.components.len()).sum();
-        self.memories = vec![Memory::new(self.study.inputs.dimension()); count];
+        self.previous = vec![Previous::new(self.study.inputs.dimension()); count];
     }
 
     /// Fits `responses`, one per component, to what the model answered at the points of `samples`. `None` if the method
@@ -83,15 +83,15 @@ impl<'a> ComponentFit<'a> {
         };
         observer.begin("fitting components", responses.len() as u64);
         let found = try_map(responses.len(), |id| {
-            let found = self.component(&tables, responses[id], &self.memories[id], can_grow, observer);
+            let found = self.component(&tables, responses[id], &self.previous[id], can_grow, observer);
             observer.advance(1);
             found
         });
         observer.finish();
         let found: Option<Vec<_>> = found?.into_iter().collect();
         let Some(found) = found else { return Ok(None) };
-        let (results, memories) = found.into_iter().unzip();
-        self.memories = memories;
+        let (results, previous) = found.into_iter().unzip();
+        self.previous = previous;
         Ok(Some(results))
     }
 
@@ -99,14 +99,16 @@ impl<'a> ComponentFit<'a> {
         &self,
         tables: &BasisTables,
         response: Response<'_>,
-        memory: &Memory,
+        previous: &Previous,
         can_grow: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<(ComponentResult, Memory)>, Interrupted> {
-        let (result, solver, memory) = match &self.solver {
-            Solver::Auto(settings, candidates) => auto::fit(tables, response, candidates, settings, memory, observer)?,
+    ) -> Result<Option<(ComponentResult, Previous)>, Interrupted> {
+        let (result, solver, previous) = match &self.solver {
+            Solver::Auto(settings, candidates) => {
+                auto::fit(tables, response, candidates, settings, previous, observer)?
+            }
             Solver::Omp(settings, candidates) => {
-                (omp::fit(tables, response, candidates, settings, observer)?, "omp", memory.clone())
+                (omp::fit(tables, response, candidates, settings, observer)?, "omp", previous.clone())
             }
             Solver::Stepwise(settings, shells) => {
                 let result = match stepwise::fit(tables, response, shells, settings, observer)? {
@@ -116,14 +118,15 @@ impl<'a> ComponentFit<'a> {
                         stepwise::settle(tables, response, &indices, degree, observer)?
                     }
                 };
-                (result, "stepwise", memory.clone())
+                (result, "stepwise", previous.clone())
             }
-            Solver::Gpc(indices) => (gpc::least_squares(tables, response, indices, observer)?, "gpc", memory.clone()),
+            Solver::Gpc(indices) => (gpc::least_squares(tables, response, indices, observer)?, "gpc", previous.clone()),
             Solver::MinimumNorm(settings) => {
-                let (result, learnt) = minimum_norm::fit(tables, response, settings, &memory.learnt, observer)?;
-                (result, "minimum-norm", Memory { learnt, ..*memory })
+                let (result, minimum_norm) =
+                    minimum_norm::fit(tables, response, settings, &previous.minimum_norm, observer)?;
+                (result, "minimum-norm", Previous { minimum_norm, ..*previous })
             }
         };
-        Ok(Some((ComponentResult { result, solver }, memory)))
+        Ok(Some((ComponentResult { result, solver }, previous)))
     }
 }

@@ -67,7 +67,7 @@ const FIRST_INDEX: u64 = 1 << 40;
 
 /// What the judgement of one level leaves for the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Former {
+pub(super) struct Previous {
     /// Proportion of stable points.
     proportion: f64,
     /// Mean |Δp| by residuals that took part in the fit.
@@ -81,39 +81,39 @@ pub(super) struct Judgement {
     /// The estimated relative error without the parts that more runs do not lower, or are not worth.
     pub reducible_error: Option<f64>,
     /// For the next level.
-    pub former: Option<Former>,
+    pub previous: Option<Previous>,
 }
 
-/// Judges `surrogate`, fitted to `values` of its components at `runs`; `former` is the judgement of the level before. If
+/// Judges `surrogate`, fitted to `values` of its components at `runs`; `previous` is the judgement of the level before. If
 /// there is none and the level `is_last`, nothing can be estimated, and the points it would take are not evaluated.
 pub(super) fn judge(
     surrogate: &Surrogate,
     fitted: &[Fitted],
     values: &[Vec<f64>],
     runs: &[Run],
-    former: Option<Former>,
+    previous: Option<Previous>,
     is_last: bool,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
     let Some(left_out) = left_out else {
-        return Ok(Judgement { decision: Decision::default(), reducible_error: None, former: None });
+        return Ok(Judgement { decision: Decision::default(), reducible_error: None, previous: None });
     };
     let seen: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
     let blind = blind_residuals(fitted, runs.len());
     let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
     let forgotten = forgotten_share(surrogate, values, runs);
-    if is_last && former.is_none() && forgotten == 0.0 {
+    if is_last && previous.is_none() && forgotten == 0.0 {
         let decision = Decision { max_re_residuals, proportion_error: None };
-        return Ok(Judgement { decision, reducible_error: None, former: None });
+        return Ok(Judgement { decision, reducible_error: None, previous: None });
     }
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
-    let now = Former { proportion: judge.proportion(), discordance: by_seen.mean_of(f64::abs) };
-    let (reducible_error, whole_error) = match former {
-        Some(former) if blind.len() >= LEAST_BLIND.min(runs.len()) => {
+    let now = Previous { proportion: judge.proportion(), discordance: by_seen.mean_of(f64::abs) };
+    let (reducible_error, whole_error) = match previous {
+        Some(previous) if blind.len() >= LEAST_BLIND.min(runs.len()) => {
             let by_blind = judge.shares(&blind, runs.len() - blind.len())?;
-            let error = |unseen| Some(relative_error(&by_blind, judge.effective_runs(), former, now, unseen));
+            let error = |unseen| Some(relative_error(&by_blind, judge.effective_runs(), previous, now, unseen));
             (error(0.0), error(1.0 / POINTS as f64))
         }
         _ => (None, None),
@@ -123,7 +123,7 @@ pub(super) fn judge(
         error => Some(error.unwrap_or(0.0).hypot(forgotten / now.proportion)).filter(|error| error.is_finite()),
     };
     let decision = Decision { max_re_residuals, proportion_error: error };
-    Ok(Judgement { decision, reducible_error, former: Some(now) })
+    Ok(Judgement { decision, reducible_error, previous: Some(now) })
 }
 
 /// The residuals of the last points of the design, by point, that no component has used for a choice.
@@ -186,15 +186,15 @@ pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &
 }
 
 /// ε of the module's head, relative to the proportion, where shares below `unseen` are not seen.
-fn relative_error(shares: &Shares, effective_runs: f64, former: Former, now: Former, unseen: f64) -> f64 {
+fn relative_error(shares: &Shares, effective_runs: f64, previous: Previous, now: Previous, unseen: f64) -> f64 {
     let square = shares.mean_of(|share| share * share);
     let mean = shares.mean_of(|share| share);
     let count = shares.effective_count();
     let is_significant = mean.abs() > SIGNIFICANT * (square / count).sqrt();
     let systematic = if is_significant { mean } else { 0.0 };
-    let (square_now, square_former) = (now.discordance.powi(2), former.discordance.powi(2));
+    let (square_now, square_former) = (now.discordance.powi(2), previous.discordance.powi(2));
     let left = if square_former > 0.0 { square_now / (square_now + square_former) } else { 0.5 };
-    let change = (now.proportion - former.proportion) * left;
+    let change = (now.proportion - previous.proportion) * left;
     let cautious = square * (1.0 + count.sqrt().recip()).powi(2);
     let error = ((cautious + unseen * unseen) / effective_runs + systematic * systematic + change * change).sqrt();
     error / now.proportion
@@ -341,7 +341,7 @@ mod tests {
     #[test]
     fn scattered_errors_average_out_and_common_ones_do_not() {
         let weights = vec![1.0; 100];
-        let now = Former { proportion: 0.5, discordance: 0.01 };
+        let now = Previous { proportion: 0.5, discordance: 0.01 };
         let scattered = Shares { shares: (0..100).map(|i| if i % 2 == 0 { 0.01 } else { -0.01 }).collect(), weights };
         assert!((relative_error(&scattered, 100.0, now, now, UNSEEN) - 1.1 * 0.01 / 10.0 / 0.5).abs() < UNSEEN);
         let common = Shares { shares: vec![0.01; 100], weights: vec![1.0; 100] };
@@ -351,11 +351,11 @@ mod tests {
     #[test]
     fn the_change_between_levels_counts_by_how_far_errors_fell() {
         let none = Shares { shares: vec![0.0; 10], weights: vec![1.0; 10] };
-        let former = Former { proportion: 0.52, discordance: 0.03 };
-        let now = Former { proportion: 0.5, discordance: 0.01 };
-        assert!((relative_error(&none, 10.0, former, now, UNSEEN) - 0.02 * 0.1 / 0.5).abs() < UNSEEN);
+        let previous = Previous { proportion: 0.52, discordance: 0.03 };
+        let now = Previous { proportion: 0.5, discordance: 0.01 };
+        assert!((relative_error(&none, 10.0, previous, now, UNSEEN) - 0.02 * 0.1 / 0.5).abs() < UNSEEN);
         let resolved = relative_error(&none, 10.0, now, now, UNSEEN);
         assert!(resolved > 0.0 && resolved < UNSEEN, "nothing seen is not nothing there");
-        assert_eq!(relative_error(&none, 10.0, former, Former { proportion: 0.0, ..now }, UNSEEN), f64::INFINITY);
+        assert_eq!(relative_error(&none, 10.0, previous, Previous { proportion: 0.0, ..now }, UNSEEN), f64::INFINITY);
     }
 }

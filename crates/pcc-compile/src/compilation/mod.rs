@@ -7,7 +7,7 @@ mod evaluations;
 mod record;
 
 use components::ComponentFit;
-use decision::{Former, judge};
+use decision::{Previous, judge};
 use evaluations::Evaluations;
 
 use crate::campaign::{Campaign, Ledger, RunError};
@@ -118,7 +118,7 @@ pub fn build_with<'a>(
     let mut evaluations = Evaluations::new(campaign, model)?;
     let mut levels = Vec::new();
     let mut grouping: Vec<Output> = Vec::new();
-    let mut former: Option<Former> = None;
+    let mut previous: Option<Previous> = None;
     let mut progress = Progress { lowest: f64::INFINITY, at_size: study.design.initial, levels_since: 0 };
     let mut size = study.design.initial;
     loop {
@@ -127,9 +127,9 @@ pub fn build_with<'a>(
         check_failures(campaign, &evaluations)?;
         let outputs = evaluations.outputs()?;
         if groups(&outputs) != groups(&grouping) {
-            // Other components: what was learnt of the former ones does not apply.
+            // Other components: what was learnt of the previous ones does not apply.
             fit.forget(&outputs);
-            former = None;
+            previous = None;
         }
         let next = study.design.next_size(size).filter(|_| !study.fit.method.has_fixed_design());
         let values = evaluations.components(&outputs)?;
@@ -153,8 +153,8 @@ pub fn build_with<'a>(
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let tolerance = study.fit.proportion_tolerance;
         let is_last = next.is_none() || (needs_no_points && tolerance.is_none());
-        let judgement = judge(&surrogate, &results, &values, evaluations.runs(), former, is_last, observer)?;
-        (surrogate.decision, former) = (judgement.decision, judgement.former);
+        let judgement = judge(&surrogate, &results, &values, evaluations.runs(), previous, is_last, observer)?;
+        (surrogate.decision, previous) = (judgement.decision, judgement.previous);
         progress.note(judgement.reducible_error, size);
         let is_small = |tolerance| judgement.reducible_error.is_some_and(|error| error <= tolerance);
         let is_decided = tolerance.is_none_or(is_small) || progress.has_stalled(size);

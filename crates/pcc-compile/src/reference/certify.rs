@@ -1,11 +1,11 @@
 //! A verified bound on the stability proportion: fresh model runs against the surrogate.
 
-use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
+use super::direct_computations::{ReferenceError, for_each_chunk, surrogate_block};
 use crate::campaign::Campaign;
 use pcc_evaluate::evaluation::{EvalError, Plan, monte_carlo};
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::probability::random::Purpose;
-use pcc_evaluate::probability::statistics::{Discordance, Interval};
+use pcc_evaluate::probability::statistics::{DiscordantCounts, Interval};
 use pcc_evaluate::surrogate::{Certificate, Surrogate};
 
 /// How the fresh points are drawn, as certificates say it.
@@ -15,7 +15,7 @@ const SCHEME: &str = "independent";
 const SURROGATE_SAMPLES: u64 = 1_000_000;
 
 /// Runs the model of a study, or of a campaign that keeps books of its runs, at `runs` fresh points and bounds its stability proportion from those at which `surrogate`
-/// disagrees ([`Discordance::bound`]).
+/// disagrees ([`DiscordantCounts::bound`]).
 ///
 /// The points belong to a purpose of their own: they are independent of the design and of all evaluation points,
 /// whatever the seeds. The certificate is to be added to those the surrogate has; choosing among seeds by their result
@@ -39,7 +39,7 @@ pub fn certify<'a>(
         return Err(ReferenceError::other_problem(surrogate, study));
     }
     let plan = Plan::new(surrogate);
-    let mut discordance = Discordance { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
+    let mut discordance = DiscordantCounts { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
     for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |_, points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
         for (run, &max_re) in found.iter().zip(&block.max_re) {

@@ -1,6 +1,6 @@
 //! A surrogate against its model on the same points.
 
-use super::monte_carlo::{ReferenceError, check_problem, for_each_chunk, surrogate_block};
+use super::direct_computations::{ReferenceError, check_problem, for_each_chunk, surrogate_block};
 use crate::campaign::{Campaign, Run};
 use crate::mechanics::spectrum::{SpectrumError, decompose};
 use nalgebra::Complex;

@@ -2,10 +2,10 @@
 
 mod certify;
 mod compare;
-mod monte_carlo;
+mod direct_computations;
 mod sample;
 
 pub use certify::certify;
 pub use compare::{Comparison, ComponentError, compare};
-pub use monte_carlo::{Reference, ReferenceError, check_problem, monte_carlo};
+pub use direct_computations::{Reference, ReferenceError, check_problem, monte_carlo};
 pub use sample::ModelSample;

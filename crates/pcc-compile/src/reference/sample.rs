@@ -1,7 +1,7 @@
 //! Direct computations that are kept, so that many surrogates can be judged on the same points for the price of one.
 
 use super::compare::{Comparison, mode_errors};
-use super::monte_carlo::{ReferenceError, for_each_chunk, surrogate_block};
+use super::direct_computations::{ReferenceError, for_each_chunk, surrogate_block};
 use crate::campaign::Campaign;
 use crate::study::Study;
 use nalgebra::Complex;

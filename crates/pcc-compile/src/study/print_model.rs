@@ -3,8 +3,8 @@
 use super::print::{Printer, float};
 use super::{Command, ModelSettings, Table};
 use crate::mechanics::model::CLUTCH_PARAMETERS;
+use crate::mechanics::model::command::{Keep, Mode};
 use crate::mechanics::model::matrices::{Description, Entry, Form, Layout, Term};
-use crate::mechanics::model::program::{Keep, Mode};
 
 pub(super) fn model(file: &mut Printer, model: &ModelSettings) {
     file.table("model");

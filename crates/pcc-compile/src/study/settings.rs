@@ -1,7 +1,7 @@
 //! The decisions a study records.
 
+use crate::mechanics::model::command::{CommandModel, CommandSettings, Keep, Mode};
 use crate::mechanics::model::matrices::Description;
-use crate::mechanics::model::program::{Keep, Mode, Program, ProgramSettings};
 use crate::mechanics::spectrum::{Modes, Target};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -49,8 +49,8 @@ pub struct Command {
 
 impl Command {
     /// The program, ready to run at points of these inputs.
-    pub(super) fn program(&self, inputs: &[&str]) -> Program {
-        Program::new(ProgramSettings {
+    pub(super) fn program(&self, inputs: &[&str]) -> CommandModel {
+        CommandModel::new(CommandSettings {
             command: self.arguments.clone(),
             shell: self.shell,
             mode: self.mode,

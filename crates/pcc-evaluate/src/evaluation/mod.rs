@@ -17,11 +17,11 @@ pub use analysis::sensitivity::{
     Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity, sensitivities, sensitivities_in,
 };
 pub use error::EvalError;
-pub use kernel::lanes::{LANES, Lanes};
+pub use kernel::lanes::{BLOCK_POINTS, Lanes};
 pub use kernel::plan::{Plan, Workspace};
 pub use kernel::points::evaluate_points;
 pub use kernel::results::Results;
-pub use survey::division::Layout;
+pub use survey::division::Division;
 pub use survey::findings::{Answer, Cell, Findings};
 pub use survey::histogram::Histogram;
 pub use survey::monte_carlo::monte_carlo;
@@ -29,6 +29,6 @@ pub use survey::pilot::{Pilot, PilotError};
 pub use survey::quantity::Quantity;
 pub use survey::question::{Bins, Condition, Event, Question, Sampler, Sweep};
 pub use survey::region::{Region, Regions};
-pub use survey::survey::{Progress, Survey};
+pub use survey::survey::{Survey, Surveyed};
 pub use survey::survey_error::SurveyError;
 pub use survey::tally::Tally;

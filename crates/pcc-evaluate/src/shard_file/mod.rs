@@ -220,7 +220,7 @@ impl Part {
             return Err(PartError::Program { found: program });
         }
         let part = Self { surrogate: artifact::decode(surrogate.as_bytes())?.surrogate, question, findings };
-        if !part.findings.fits(part.survey()?.layout()) {
+        if !part.findings.fits(part.survey()?.division()) {
             return Err(PartError::Content("counts that do not fit the question".to_owned()));
         }
         Ok(part)
@@ -237,7 +237,7 @@ impl Part {
 
     /// Whether it is all of the evaluation.
     pub fn is_complete(&self) -> bool {
-        self.survey().is_ok_and(|survey| self.findings.chunks() == (0..survey.layout().chunks()))
+        self.survey().is_ok_and(|survey| self.findings.chunks() == (0..survey.division().chunks()))
     }
 }
 
@@ -298,9 +298,9 @@ pub fn merge(mut parts: Vec<(String, Part)>) -> Result<Part, PartError> {
         }
         if next.start > end {
             let place = format!("between {before} and {name}");
-            return Err(PartError::Gap { place, missing: end..next.start, chunks: survey.layout().chunks() });
+            return Err(PartError::Gap { place, missing: end..next.start, chunks: survey.division().chunks() });
         }
-        if next.start < end || !whole.findings.append(part.findings, survey.layout()) {
+        if next.start < end || !whole.findings.append(part.findings, survey.division()) {
             return Err(PartError::Overlap { first: before, second: name });
         }
         before = name;

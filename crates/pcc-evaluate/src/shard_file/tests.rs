@@ -1,7 +1,7 @@
 //! Parts are put together to the same bytes, or refused.
 
 use super::*;
-use crate::evaluation::{Bins, Event, Progress, Sampler, Sweep};
+use crate::evaluation::{Bins, Event, Sampler, Surveyed, Sweep};
 use crate::foundation::Silent;
 use proptest::prelude::*;
 
@@ -23,9 +23,9 @@ fn rich_question() -> Question {
 fn part(question: &Question, shard: u64, shards: u64) -> Part {
     let surrogate = surrogate();
     let survey = Survey::new(&surrogate, question, InstructionSet::best()).unwrap();
-    match survey.run(survey.layout().shard(shard, shards), &Silent).unwrap() {
-        Progress::Complete(findings) => Part { surrogate: surrogate.clone(), question: question.clone(), findings },
-        Progress::Interrupted(_) => panic!("nobody interrupts"),
+    match survey.run(survey.division().shard(shard, shards), &Silent).unwrap() {
+        Surveyed::Complete(findings) => Part { surrogate: surrogate.clone(), question: question.clone(), findings },
+        Surveyed::Interrupted(_) => panic!("nobody interrupts"),
     }
 }
 
@@ -182,7 +182,7 @@ proptest! {
         let file = format!("{}\n{body}", serde_json::to_string(&header).unwrap());
         if let Ok(part) = Part::from_bytes(file.as_bytes()) {
             let survey = part.survey().unwrap();
-            for cell in part.findings.answer(survey.layout()).cells {
+            for cell in part.findings.answer(survey.division()).cells {
                 let share = cell.share(0.95, |tally| tally.summary.stable);
                 prop_assert!((0.0..=1.0).contains(&share.value));
             }

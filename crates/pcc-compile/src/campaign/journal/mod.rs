@@ -14,7 +14,7 @@
 mod record;
 
 use record::LARGEST_BODY;
-pub use record::{HASH_BYTES, Outcome, Record};
+pub use record::{HASH_BYTES, Record, RunOutcome};
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -110,10 +110,10 @@ impl Journal {
     /// # Examples
     ///
     /// ```
-    /// use pcc_compile::campaign::journal::{Journal, Outcome, Record};
+    /// use pcc_compile::campaign::journal::{Journal, RunOutcome, Record};
     /// # let folder = tempfile::tempdir()?;
     /// # let path = folder.path().join("clutch.journal");
-    /// let failed = Outcome::Failed { attempts: 1, cause: "exit status 1".to_owned(), by_circumstances: false };
+    /// let failed = RunOutcome::Failed { attempts: 1, cause: "exit status 1".to_owned(), by_circumstances: false };
     /// let record = Record { model: [0; 32], point: vec![0.25], outcome: failed, seconds: 3.5 };
     /// let (journal, before) = Journal::open(&path)?;
     /// assert!(before.records.is_empty());
@@ -322,7 +322,7 @@ mod tests {
     use super::*;
 
     fn record(x: f64) -> Record {
-        let outcome = Outcome::Failed { attempts: 1, cause: "none".to_owned(), by_circumstances: false };
+        let outcome = RunOutcome::Failed { attempts: 1, cause: "none".to_owned(), by_circumstances: false };
         Record { model: [1; HASH_BYTES], point: vec![x], outcome, seconds: 1.0 }
     }
 

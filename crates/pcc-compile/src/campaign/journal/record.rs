@@ -28,7 +28,7 @@ pub(super) const LARGEST_BODY: usize = 1 << 30;
 
 /// How a recorded run ended.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outcome {
+pub enum RunOutcome {
     /// The model answered.
     Answered(Computation),
     /// It did not, in so many attempts.
@@ -50,7 +50,7 @@ pub struct Record {
     /// The inputs, in physical units.
     pub point: Vec<f64>,
     /// What came of it.
-    pub outcome: Outcome,
+    pub outcome: RunOutcome,
     /// Wall-clock time of the run; 0 if it is not known.
     pub seconds: f64,
 }
@@ -64,11 +64,11 @@ impl Record {
         put_count(&mut body, self.point.len());
         self.point.iter().for_each(|&value| put_number(&mut body, value));
         match &self.outcome {
-            Outcome::Answered(computation) => {
+            RunOutcome::Answered(computation) => {
                 body.push(0);
                 put_computation(&mut body, computation);
             }
-            Outcome::Failed { attempts, cause, by_circumstances } => {
+            RunOutcome::Failed { attempts, cause, by_circumstances } => {
                 body.push(if *by_circumstances { 2 } else { 1 });
                 body.extend_from_slice(&attempts.to_le_bytes());
                 put_count(&mut body, cause.len());
@@ -193,11 +193,11 @@ impl<'a> Reader<'a> {
         let inputs = self.count()?;
         let point = self.numbers(inputs)?;
         let outcome = match self.byte()? {
-            0 => Outcome::Answered(self.computation(inputs)?),
+            0 => RunOutcome::Answered(self.computation(inputs)?),
             status @ (1 | 2) => {
                 let (attempts, length) = (self.count()? as u32, self.count()?);
                 let cause = String::from_utf8(self.take(length)?.to_vec()).ok()?;
-                Outcome::Failed { attempts, cause, by_circumstances: status == 2 }
+                RunOutcome::Failed { attempts, cause, by_circumstances: status == 2 }
             }
             _ => return None,
         };
@@ -244,19 +244,19 @@ mod tests {
         let derivatives = vec![matrix(2.0); point.len()];
         let system = ReducedSystem::from_parts(vec![1, 2], matrix(0.1), derivatives).unwrap();
         let reduction = Some(Reduction::Reduced(system));
-        let outcome = Outcome::Answered(Computation { eigenvalues: vec![lambda, lambda.conj()], reduction });
+        let outcome = RunOutcome::Answered(Computation { eigenvalues: vec![lambda, lambda.conj()], reduction });
         Record { model: [7; HASH_BYTES], point: point.to_vec(), outcome, seconds: 0.25 }
     }
 
     fn kinds() -> Vec<Record> {
         let full = record(&[0.1, -2e300]);
         let with = |reduction| Record {
-            outcome: Outcome::Answered(Computation { eigenvalues: vec![Complex::new(1.0, 2.0)], reduction }),
+            outcome: RunOutcome::Answered(Computation { eigenvalues: vec![Complex::new(1.0, 2.0)], reduction }),
             ..full.clone()
         };
         let failed = |by_circumstances| {
             let cause = "μ was too large\nsecond line".to_owned();
-            Record { outcome: Outcome::Failed { attempts: 3, cause, by_circumstances }, ..full.clone() }
+            Record { outcome: RunOutcome::Failed { attempts: 3, cause, by_circumstances }, ..full.clone() }
         };
         vec![
             with(None),

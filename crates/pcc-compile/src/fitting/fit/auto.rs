@@ -4,7 +4,6 @@
 //! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by folds,
 //! because its leave-one-out error does not see the selection of terms.
 
-use super::minimum_norm::Learnt;
 use super::omp::Candidates;
 use super::{Fitted, minimum_norm, omp};
 use crate::fitting::regression::{BasisTables, Response};
@@ -19,17 +18,17 @@ const ENOUGH_EQUATIONS: usize = 20;
 
 /// What the fit of a component on one design passes on to the next larger one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Memory {
-    /// What the minimum-norm fit learnt.
-    pub learnt: Learnt,
+pub struct Previous {
+    /// What the minimum-norm fit found.
+    pub minimum_norm: minimum_norm::Previous,
     /// Whether pursuit is still worth trying.
     pub tries_pursuit: bool,
 }
 
-impl Memory {
+impl Previous {
     /// Before the first design.
     pub fn new(inputs: usize) -> Self {
-        Self { learnt: Learnt::nothing(inputs), tries_pursuit: true }
+        Self { minimum_norm: minimum_norm::Previous::nothing(inputs), tries_pursuit: true }
     }
 }
 
@@ -44,18 +43,22 @@ pub fn fit(
     response: Response<'_>,
     candidates: &Candidates,
     settings: &Smooth,
-    memory: &Memory,
+    previous: &Previous,
     observer: &dyn Observer,
-) -> Result<(Fitted, &'static str, Memory), Interrupted> {
-    let (smooth, learnt) = minimum_norm::fit(tables, response, settings, &memory.learnt, observer)?;
-    let mut memory = Memory { learnt, ..*memory };
-    if !memory.tries_pursuit || smooth.errors.is_none() {
-        return Ok((smooth, "minimum-norm", memory));
+) -> Result<(Fitted, &'static str, Previous), Interrupted> {
+    let (smooth, minimum_norm) = minimum_norm::fit(tables, response, settings, &previous.minimum_norm, observer)?;
+    let mut previous = Previous { minimum_norm, ..*previous };
+    if !previous.tries_pursuit || smooth.errors.is_none() {
+        return Ok((smooth, "minimum-norm", previous));
     }
     let pursued = omp::fit(tables, response, candidates, settings, observer)?;
     let error = |fitted: &Fitted| 1.0 - fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY);
     let is_enough = response.equations(tables.inputs()).rows() >= ENOUGH_EQUATIONS;
     let is_hopeless = error(&pursued) >= HOPELESS * error(&smooth) && is_enough;
-    memory.tries_pursuit = !is_hopeless;
-    if error(&pursued) < error(&smooth) { Ok((pursued, "omp", memory)) } else { Ok((smooth, "minimum-norm", memory)) }
+    previous.tries_pursuit = !is_hopeless;
+    if error(&pursued) < error(&smooth) {
+        Ok((pursued, "omp", previous))
+    } else {
+        Ok((smooth, "minimum-norm", previous))
+    }
 }

@@ -57,7 +57,7 @@ const REFINEMENTS: usize = 3;
 
 /// What the fit of a component on one design leaves for the next larger one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Learnt {
+pub struct Previous {
     /// The prior and weight of derivatives that were best, and their error; the next search starts from them.
     found: Found,
     /// Number of points of the design on which it was found.
@@ -66,14 +66,14 @@ pub struct Learnt {
     blind: Option<BlindResiduals>,
 }
 
-impl Learnt {
+impl Previous {
     /// Before the first design.
     pub fn nothing(inputs: usize) -> Self {
         Self { found: Found::nothing(inputs), points: 0, blind: None }
     }
 }
 
-/// Fits one component. `former` is what a smaller design taught, [`Learnt::nothing`] at first; what this one teaches comes
+/// Fits one component. `previous` is what a smaller design taught, [`Previous::nothing`] at first; what this one teaches comes
 /// back for the next.
 ///
 /// `response.values[i]` is the component at point i of `tables`, in its own unit.
@@ -86,7 +86,7 @@ impl Learnt {
 ///
 /// ```
 /// use pcc_compile::fitting::design::NestedLatinHypercube;
-/// use pcc_compile::fitting::fit::minimum_norm::{fit, Learnt};
+/// use pcc_compile::fitting::fit::minimum_norm::{fit, Previous};
 /// use pcc_evaluate::polynomials::Family;
 /// use pcc_evaluate::foundation::Silent;
 /// use pcc_compile::fitting::regression::{BasisTables, Response};
@@ -99,7 +99,7 @@ impl Learnt {
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(10); 2], 10);
 /// let response = Response::of(&values, 1e-13);
 /// let settings = Smooth { max_degree: 10, s2_target: 0.999 };
-/// let (fitted, _) = fit(&tables, response, &settings, &Learnt::nothing(2), &Silent)?;
+/// let (fitted, _) = fit(&tables, response, &settings, &Previous::nothing(2), &Silent)?;
 /// assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8);
 /// # Ok::<(), pcc_evaluate::foundation::Interrupted>(())
 /// ```
@@ -107,23 +107,23 @@ pub fn fit(
     tables: &BasisTables,
     response: Response<'_>,
     settings: &Smooth,
-    former: &Learnt,
+    previous: &Previous,
     observer: &dyn Observer,
-) -> Result<(Fitted, Learnt), Interrupted> {
+) -> Result<(Fitted, Previous), Interrupted> {
     let inputs = tables.inputs();
     let Some(variance) = response.variance() else {
-        return Ok((Fitted::constant(inputs, response.values), former.clone()));
+        return Ok((Fitted::constant(inputs, response.values), previous.clone()));
     };
     let problem = Problem::new(tables, response, variance.sqrt(), settings.max_degree);
-    let found = problem.best_prior(former, observer)?;
+    let found = problem.best_prior(previous, observer)?;
     observer.check()?;
     let Some(solution) = problem.solve(&found) else {
         let mean = Fitted::mean(tables, response, variance, observer)?;
-        return Ok((mean, Learnt::nothing(inputs)));
+        return Ok((mean, Previous::nothing(inputs)));
     };
-    let is_unchanged = (&found.prior, found.weight) == (&former.found.prior, former.found.weight);
-    let blind = problem.blind_residuals(former, is_unchanged.then_some(&solution), found.error);
-    let learnt = Learnt { found, points: response.values.len(), blind };
+    let is_unchanged = (&found.prior, found.weight) == (&previous.found.prior, previous.found.weight);
+    let blind = problem.blind_residuals(previous, is_unchanged.then_some(&solution), found.error);
+    let found_before = Previous { found, points: response.values.len(), blind };
     let dropped_share = if response.gradients.is_some() { DROPPED_SHARE_WITH_DERIVATIVES } else { DROPPED_SHARE };
     let (indices, mut coefficients, residuals, left_out) =
         solution.without_negligible_terms(dropped_share, problem.resolution);
@@ -137,13 +137,13 @@ pub fn fit(
         indices: IndexSet::from_unsorted(indices),
         coefficients,
         errors: Some(errors),
-        blind_residuals: learnt.blind.clone(),
+        blind_residuals: found_before.blind.clone(),
         leave_one_out_residuals: Some(left_out.iter().map(|residual| residual * problem.scale).collect()),
-        derivative_weight: response.gradients.map(|_| learnt.found.weight),
+        derivative_weight: response.gradients.map(|_| found_before.found.weight),
         degree,
         stop: if is_accurate { Stop::Accurate } else { Stop::DesignExhausted },
     };
-    Ok((fitted, learnt))
+    Ok((fitted, found_before))
 }
 
 /// Standardized values and derivatives on a design.
@@ -180,8 +180,8 @@ impl<'a> Problem<'a> {
         Self { tables, equations, targets: DVector::from_vec(targets), mean, scale, resolution, degree }
     }
 
-    /// The prior found from the former one, unless that is good enough or there is too little new to search with.
-    fn best_prior(&self, former: &Learnt, observer: &dyn Observer) -> Result<Found, Interrupted> {
+    /// The prior found from the previous one, unless that is good enough or there is too little new to search with.
+    fn best_prior(&self, previous: &Previous, observer: &dyn Observer) -> Result<Found, Interrupted> {
         let Self { tables, equations, targets, resolution, degree, .. } = self;
         let search = Search { tables, equations, targets, resolution: *resolution, degree: *degree };
         let kept = |known: &Found| {
@@ -192,32 +192,32 @@ impl<'a> Problem<'a> {
         if !search.is_determined() {
             return Ok(kept(&Found::nothing(inputs)));
         }
-        let is_settled = former.found.error < SETTLED.ln();
+        let is_settled = previous.found.error < SETTLED.ln();
         let used = |points: usize| points.min(most_runs(equations, inputs)) as f64;
-        if is_settled || used(equations.samples()) < WORTH_A_SEARCH * used(former.points) {
-            return Ok(kept(&former.found));
+        if is_settled || used(equations.samples()) < WORTH_A_SEARCH * used(previous.points) {
+            return Ok(kept(&previous.found));
         }
-        search.best(&former.found, observer)
+        search.best(&previous.found, observer)
     }
 
-    /// What the prior of a former design, chosen without the points that are new here, misses at each of them. Residuals
+    /// What the prior of a previous design, chosen without the points that are new here, misses at each of them. Residuals
     /// of points that were new on designs before are kept while there are few, scaled by how far errors fell since.
-    /// `unchanged` is the solution with the former prior, if it is known.
-    fn blind_residuals(&self, former: &Learnt, unchanged: Option<&Solution>, error: f64) -> Option<BlindResiduals> {
-        let first = former.points;
+    /// `unchanged` is the solution with the previous prior, if it is known.
+    fn blind_residuals(&self, previous: &Previous, unchanged: Option<&Solution>, error: f64) -> Option<BlindResiduals> {
+        let first = previous.points;
         if first == 0 || first >= self.equations.samples() {
-            return former.blind.clone();
+            return previous.blind.clone();
         }
         let left_out = match unchanged {
             Some(solution) => solution.left_out.clone(),
-            None => self.solve(&former.found)?.left_out,
+            None => self.solve(&previous.found)?.left_out,
         };
         let new = left_out.iter().skip(first).map(|residual| residual * self.scale);
         if new.len() >= ENOUGH_BLIND {
             return Some(BlindResiduals { first, values: new.collect() });
         }
-        let fallen = if former.found.error.is_finite() { (error - former.found.error).exp() } else { 1.0 };
-        let mut blind = former.blind.clone().unwrap_or(BlindResiduals { first, values: Vec::new() });
+        let fallen = if previous.found.error.is_finite() { (error - previous.found.error).exp() } else { 1.0 };
+        let mut blind = previous.blind.clone().unwrap_or(BlindResiduals { first, values: Vec::new() });
         blind.values.iter_mut().for_each(|residual| *residual *= fallen);
         blind.values.extend(new);
         Some(blind)
@@ -318,7 +318,7 @@ mod tests {
         let samples = samples(2, &[30]);
         let values: Vec<f64> = samples.points().map(smooth).collect();
         let response = Response::of(&values, 0.0);
-        let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(2), &Silent).unwrap();
+        let (fitted, _) = fit(&tables(&samples), response, &settings(), &Previous::nothing(2), &Silent).unwrap();
         assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8 && fitted.stop == Stop::Accurate);
         assert!(fitted.blind_residuals.is_none(), "a first design has chosen everything itself");
     }
@@ -330,7 +330,7 @@ mod tests {
             let samples = samples(1, &[size]);
             let values: Vec<f64> = samples.points().map(|x| (1.3 * x[0]).sin()).collect();
             let response = Response::of(&values, 1e-13);
-            let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(1), &Silent).unwrap();
+            let (fitted, _) = fit(&tables(&samples), response, &settings(), &Previous::nothing(1), &Silent).unwrap();
             assert_eq!(fitted.stop, Stop::Accurate, "{size} points");
         }
     }
@@ -341,9 +341,9 @@ mod tests {
         let large = samples(2, &[20, 40]);
         let values: Vec<f64> = large.points().map(smooth).collect();
         let response = |values| Response::of(values, 0.0);
-        let (_, learnt) =
-            fit(&tables(&small), response(&values[..20]), &settings(), &Learnt::nothing(2), &Silent).unwrap();
-        let (fitted, _) = fit(&tables(&large), response(&values), &settings(), &learnt, &Silent).unwrap();
+        let (_, found_before) =
+            fit(&tables(&small), response(&values[..20]), &settings(), &Previous::nothing(2), &Silent).unwrap();
+        let (fitted, _) = fit(&tables(&large), response(&values), &settings(), &found_before, &Silent).unwrap();
         let blind = fitted.blind_residuals.unwrap();
         assert_eq!((blind.first, blind.values.len()), (20, 20));
     }
@@ -357,7 +357,7 @@ mod tests {
             let samples = samples(2, &[size]);
             let values: Vec<f64> = (0..size).map(|_| stream.next_unit()).collect();
             let response = Response::of(&values, 0.0);
-            let (fitted, _) = fit(&tables(&samples), response, &settings(), &Learnt::nothing(2), &Silent).unwrap();
+            let (fitted, _) = fit(&tables(&samples), response, &settings(), &Previous::nothing(2), &Silent).unwrap();
             assert_ne!(fitted.stop, Stop::Accurate, "{size} points: {:?}", fitted.errors);
         }
     }

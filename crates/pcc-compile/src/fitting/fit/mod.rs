@@ -1,9 +1,9 @@
 //! Fitting methods: from values on a design, perhaps with derivatives, to one sparse expansion.
 
 pub mod auto;
+mod covariance;
 mod cross_validation;
 pub mod gpc;
-mod kernel;
 pub mod minimum_norm;
 pub mod multi_element;
 pub mod omp;

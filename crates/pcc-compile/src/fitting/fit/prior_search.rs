@@ -6,7 +6,7 @@
 //! judged by the values of left-out runs in either case: whether to start anew, and how much weight derivatives deserve.
 //! Priors of different weights are comparable then, because none was tuned on the error that is compared.
 
-use super::kernel::Kernel;
+use super::covariance::Kernel;
 use super::prior::Prior;
 use super::regularized::Regularized;
 use crate::fitting::regression::{BasisTables, Equations};

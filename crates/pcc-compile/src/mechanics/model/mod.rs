@@ -1,9 +1,9 @@
 //! Models: from parameters to the eigenvalues of a linearised system.
 
 mod clutch;
+pub mod command;
 pub mod matrices;
 mod parameter;
-pub mod program;
 mod second_order;
 mod unrun;
 
@@ -13,9 +13,9 @@ pub use second_order::{Linearization, SecondOrder};
 pub use unrun::Unrun;
 
 use crate::numerics::eigenvalues::EigenvalueError;
+use command::{CommandError, CommandFailure};
 use matrices::MatricesError;
 use nalgebra::Complex;
-use program::{ProgramError, ProgramFailure};
 use thiserror::Error;
 
 /// Why a model could not be set up or run.
@@ -52,7 +52,7 @@ pub enum ModelError {
     Matrices(Box<MatricesError>),
     /// A program of the user's gave no answer.
     #[error(transparent)]
-    Program(Box<ProgramError>),
+    Command(Box<CommandError>),
     /// Answers come in tables.
     #[error(
         "models of kind \"table\" are not run by pcc: write the points with pcc design STUDY --emit rows.csv, run them, and hand the \
@@ -73,27 +73,27 @@ impl From<MatricesError> for ModelError {
     }
 }
 
-impl From<ProgramError> for ModelError {
-    fn from(error: ProgramError) -> Self {
-        Self::Program(Box::new(error))
+impl From<CommandError> for ModelError {
+    fn from(error: CommandError) -> Self {
+        Self::Command(Box::new(error))
     }
 }
 
 impl ModelError {
     /// Whether the model was run and failed, and not what it takes to run it.
     pub fn is_of_run(&self) -> bool {
-        !matches!(self, Self::Program(error) if error.failure.is_of_machine())
+        !matches!(self, Self::Command(error) if error.failure.is_of_machine())
     }
 
     /// Whether something else than the model ended the run: another attempt may go well.
     pub fn is_by_circumstances(&self) -> bool {
-        matches!(self, Self::Program(error) if matches!(error.failure, ProgramFailure::Signal { .. }))
+        matches!(self, Self::Command(error) if matches!(error.failure, CommandFailure::Signal { .. }))
     }
 
     /// How often a run was tried before this was its end.
     pub fn attempts(&self) -> u32 {
         match self {
-            Self::Program(error) => error.attempts,
+            Self::Command(error) => error.attempts,
             _ => 1,
         }
     }

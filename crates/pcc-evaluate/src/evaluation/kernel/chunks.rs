@@ -5,7 +5,7 @@ use crate::foundation::Observer;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Samples treated together where every sample costs several evaluations, a multiple of [`crate::evaluation::LANES`].
+/// Samples treated together where every sample costs several evaluations, a multiple of [`crate::evaluation::BLOCK_POINTS`].
 pub(crate) const CHUNK: u64 = 1024;
 
 /// Chunks whose results are held in memory before they are merged.

@@ -1,10 +1,10 @@
-//! The inner loops of evaluation: a [`Program`] at the points of a block.
+//! The inner loops of evaluation: [`Operations`] at the points of a block.
 //!
 //! Written once for all instruction sets: every lane holds one point and goes through the same operations in the same
 //! order, fused multiply-add among them, so all sets give the same bits.
 
 use super::lanes::{Lanes, VECTORS, Vectors};
-use super::operations::{Leaf, Program, Step};
+use super::operations::{Leaf, Operations, Step};
 use pulp::Simd;
 use std::array::from_fn;
 
@@ -13,7 +13,7 @@ use std::array::from_fn;
 #[inline(always)]
 pub(crate) fn evaluate<S: Simd>(
     simd: S,
-    program: &Program,
+    program: &Operations,
     points: &[Lanes],
     table: &mut [Lanes],
     components: &mut [Lanes],
@@ -27,7 +27,7 @@ pub(crate) fn evaluate<S: Simd>(
 
 /// φ_1, φ_2, … of every input, φ_k(x) = (a_k x + b_k) φ_{k−1}(x) − c_k φ_{k−2}(x).
 #[inline(always)]
-fn univariates<S: Simd>(simd: S, program: &Program, part: usize, points: &[Lanes], table: &mut [Lanes]) {
+fn univariates<S: Simd>(simd: S, program: &Operations, part: usize, points: &[Lanes], table: &mut [Lanes]) {
     let mut rows = table.iter_mut();
     let mut steps = &program.steps[..];
     for (point, &degree) in points.iter().zip(&program.degrees) {
@@ -49,7 +49,13 @@ fn univariates<S: Simd>(simd: S, program: &Program, part: usize, points: &[Lanes
 
 /// Every component's constant, and its terms in one input that no product extends.
 #[inline(always)]
-fn constants_and_singles<S: Simd>(simd: S, program: &Program, part: usize, table: &[Lanes], components: &mut [Lanes]) {
+fn constants_and_singles<S: Simd>(
+    simd: S,
+    program: &Operations,
+    part: usize,
+    table: &[Lanes],
+    components: &mut [Lanes],
+) {
     let mut start = 0;
     for (component, &(constant, end)) in components.iter_mut().zip(&program.constants) {
         let sum = [simd.splat_f64s(constant); VECTORS];
@@ -60,7 +66,7 @@ fn constants_and_singles<S: Simd>(simd: S, program: &Program, part: usize, table
 
 /// Stage by stage: the products, then for each component the sums of leaves, times their parents.
 #[inline(always)]
-fn stages<S: Simd>(simd: S, program: &Program, part: usize, table: &mut [Lanes], components: &mut [Lanes]) {
+fn stages<S: Simd>(simd: S, program: &Operations, part: usize, table: &mut [Lanes], components: &mut [Lanes]) {
     let (groups, leaves) = (&program.groups[..], &program.leaves[..]);
     let (mut product, mut run, mut group, mut leaf) = (0, 0, 0, 0);
     for stage in &program.stages {

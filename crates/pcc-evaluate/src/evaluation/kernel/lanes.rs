@@ -3,7 +3,7 @@
 use pulp::Simd;
 
 /// Points evaluated together, one per lane: as many as eight vectors of the widest instruction set hold.
-pub const LANES: usize = 64;
+pub const BLOCK_POINTS: usize = 64;
 
 /// Vectors that a calculation works on at once: enough for the processor to start one operation while others are under way,
 /// few enough to stay in registers.
@@ -12,7 +12,7 @@ pub(crate) const VECTORS: usize = 8;
 /// One number per lane, aligned like the widest vectors, so that none of them crosses a cache line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(64))]
-pub struct Lanes(pub [f64; LANES]);
+pub struct Lanes(pub [f64; BLOCK_POINTS]);
 
 /// [`VECTORS`] vectors of an instruction set.
 pub(crate) type Vectors<S> = [<S as Simd>::f64s; VECTORS];
@@ -20,12 +20,12 @@ pub(crate) type Vectors<S> = [<S as Simd>::f64s; VECTORS];
 impl Lanes {
     /// The same number in every lane.
     pub const fn splat(value: f64) -> Self {
-        Self([value; LANES])
+        Self([value; BLOCK_POINTS])
     }
 
     /// How many parts of [`VECTORS`] vectors make up all lanes.
     pub(crate) const fn parts<S: Simd>() -> usize {
-        LANES / (VECTORS * S::F64_LANES)
+        BLOCK_POINTS / (VECTORS * S::F64_LANES)
     }
 
     /// One part.

@@ -64,7 +64,7 @@ pub(crate) struct Stage {
 /// What the evaluation of one element does, in order. The table has the univariate values in its first rows, input by
 /// input, then the products.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Program {
+pub(crate) struct Operations {
     /// Highest degree of every input.
     pub degrees: Vec<usize>,
     /// Recurrences of all inputs, one after the other: one row each.
@@ -86,7 +86,7 @@ pub(crate) struct Program {
 /// The terms of one component but for the constant.
 type Terms = BTreeMap<Factors, f64>;
 
-impl Program {
+impl Operations {
     /// The program of one element. Centre and scale of the components are folded into the coefficients.
     pub fn new(surrogate: &Surrogate, element: usize) -> Self {
         let mut program = Self::default();
@@ -250,7 +250,7 @@ mod tests {
             expansion(&[(&[0, 0, 0], 0.5), (&[1, 0, 0], 1.0), (&[1, 1, 0], 2.0), (&[1, 0, 1], 3.0), (&[0, 0, 2], 4.0)]);
         let second = expansion(&[(&[1, 1, 1], 5.0), (&[0, 1, 0], 6.0)]);
         let surrogate = surrogate(inputs(&[(-1.0, 1.0); 3]), vec![first, second]);
-        let program = Program::new(&surrogate, 0);
+        let program = Operations::new(&surrogate, 0);
         assert_eq!((program.degrees.as_slice(), program.terms), (&[1, 1, 2][..], 6));
         // Components: Re and Im of two modes. φ_2(ξ3) of the first, φ_1(ξ2) of the second.
         let constants: Vec<f64> = program.constants.iter().map(|&(constant, _)| constant).collect();
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn constants_need_no_operations() {
         let surrogate = surrogate(inputs(&[(0.0, 1.0)]), vec![expansion(&[(&[0], -2.0)])]);
-        let program = Program::new(&surrogate, 0);
+        let program = Operations::new(&surrogate, 0);
         assert_eq!((program.flops(), program.rows(), program.terms), (0, 0, 0));
     }
 }

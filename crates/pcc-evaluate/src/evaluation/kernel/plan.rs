@@ -1,12 +1,12 @@
 //! A surrogate compiled for speed.
 //!
 //! All components are expanded in products of the same univariate polynomials, and their multi-indices overlap. The plan
-//! merges them into one [`Program`] per element, which is evaluated at [`crate::evaluation::LANES`] points at a time, one per lane, with the vector
+//! merges them into [`Operations`], one list per element, which are evaluated at [`crate::evaluation::BLOCK_POINTS`] points at a time, one per lane, with the vector
 //! instructions of the processor; eigenvalues and max Re λ follow in the same lanes.
 
 use super::kernel;
 use super::lanes::Lanes;
-use super::operations::Program;
+use super::operations::Operations;
 use super::recombination::recombine;
 use super::results::Results;
 use crate::components::Output;
@@ -40,7 +40,7 @@ pub struct Plan {
     dimension: usize,
     modes: usize,
     /// One per element.
-    programs: Vec<Program>,
+    operations: Vec<Operations>,
 }
 
 /// Memory that an evaluation works in.
@@ -79,7 +79,7 @@ impl Plan {
             outputs: surrogate.outputs.clone(),
             dimension: surrogate.inputs.dimension(),
             modes: surrogate.modes().len(),
-            programs: elements.map(|element| Program::new(surrogate, element)).collect(),
+            operations: elements.map(|element| Operations::new(surrogate, element)).collect(),
         }
     }
 
@@ -103,8 +103,8 @@ impl Plan {
     /// a parent, which starts its sum, costs nothing, and the first in a sum without such a start one. With several elements two per
     /// input for the local variables, and those of the most expensive element. Roots and statistics are not counted.
     pub fn flops(&self) -> usize {
-        let maps = if self.programs.len() > 1 { 2 * self.dimension } else { 0 };
-        maps + self.most(Program::flops)
+        let maps = if self.operations.len() > 1 { 2 * self.dimension } else { 0 };
+        maps + self.most(Operations::flops)
     }
 
     /// Memory for [`Plan::evaluate`].
@@ -112,7 +112,7 @@ impl Plan {
         let lanes = |count| vec![Lanes::splat(0.0); count];
         Workspace {
             points: lanes(self.dimension),
-            table: lanes(self.most(Program::rows)),
+            table: lanes(self.most(Operations::rows)),
             results: Results {
                 components: lanes(self.most(|program| program.constants.len())),
                 growth_rates: lanes(self.modes),
@@ -138,16 +138,16 @@ impl Plan {
     ///
     /// If there are not that many elements.
     pub fn evaluate_components(&self, element: usize, workspace: &mut Workspace) {
-        self.instructions.run(Evaluating { program: &self.programs[element], workspace });
+        self.instructions.run(Evaluating { program: &self.operations[element], workspace });
     }
 
-    fn most(&self, part: impl Fn(&Program) -> usize) -> usize {
-        self.programs.iter().map(part).max().unwrap_or(0)
+    fn most(&self, part: impl Fn(&Operations) -> usize) -> usize {
+        self.operations.iter().map(part).max().unwrap_or(0)
     }
 }
 
 struct Evaluating<'a> {
-    program: &'a Program,
+    program: &'a Operations,
     workspace: &'a mut Workspace,
 }
 

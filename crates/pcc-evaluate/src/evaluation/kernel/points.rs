@@ -1,6 +1,6 @@
 //! A surrogate at many points, in blocks of lanes.
 
-use super::lanes::{LANES, Lanes};
+use super::lanes::{BLOCK_POINTS, Lanes};
 use super::plan::{Plan, Workspace};
 use super::results::Results;
 use crate::components::Block;
@@ -15,7 +15,7 @@ pub fn evaluate_points(surrogate: &Surrogate, plan: &Plan, points: &[&[f64]]) ->
     block
 }
 
-/// Evaluates points [`LANES`] at a time, with memory of its own. Points in the same element are evaluated together, and results
+/// Evaluates points [`BLOCK_POINTS`] at a time, with memory of its own. Points in the same element are evaluated together, and results
 /// come in the order of the points.
 pub(crate) struct Evaluator<'a> {
     surrogate: &'a Surrogate,
@@ -60,10 +60,10 @@ impl<'a> Evaluator<'a> {
         if self.plan.mesh().elements().len() > 1 {
             return self.by_element(count, fill, visit);
         }
-        for start in (0..count).step_by(LANES) {
+        for start in (0..count).step_by(BLOCK_POINTS) {
             fill(start, self.workspace.points_mut());
             self.plan.evaluate(0, &mut self.workspace);
-            visit(self.workspace.results(), LANES.min(count - start));
+            visit(self.workspace.results(), BLOCK_POINTS.min(count - start));
         }
     }
 
@@ -88,22 +88,22 @@ impl<'a> Evaluator<'a> {
         mut visit: impl FnMut(&Results, usize),
     ) {
         let dimension = self.point.len();
-        let blocks = count.div_ceil(LANES);
+        let blocks = count.div_ceil(BLOCK_POINTS);
         self.points.resize(blocks * dimension, Lanes::splat(0.0));
         self.results.resize(blocks, self.workspace.results().clone());
         for (number, points) in self.points.chunks_exact_mut(dimension).enumerate() {
-            fill(number * LANES, points);
+            fill(number * BLOCK_POINTS, points);
         }
         let starts = self.sort(count);
         let order = std::mem::take(&mut self.order);
         for element in 0..starts.len() - 1 {
-            for group in order[starts[element]..starts[element + 1]].chunks(LANES) {
+            for group in order[starts[element]..starts[element + 1]].chunks(BLOCK_POINTS) {
                 self.evaluate_group(element, group);
             }
         }
         self.order = order;
         for (number, results) in self.results.iter().enumerate() {
-            visit(results, LANES.min(count - number * LANES));
+            visit(results, BLOCK_POINTS.min(count - number * BLOCK_POINTS));
         }
     }
 
@@ -113,8 +113,8 @@ impl<'a> Evaluator<'a> {
         let mut starts = vec![0; mesh.elements().len() + 1];
         let mut found = Vec::with_capacity(count);
         for number in 0..count {
-            let points = &self.points[number / LANES * dimension..][..dimension];
-            self.point.iter_mut().zip(points).for_each(|(xi, coordinate)| *xi = coordinate.0[number % LANES]);
+            let points = &self.points[number / BLOCK_POINTS * dimension..][..dimension];
+            self.point.iter_mut().zip(points).for_each(|(xi, coordinate)| *xi = coordinate.0[number % BLOCK_POINTS]);
             let element = mesh.locate(&self.point);
             starts[element + 1] += 1;
             found.push(element);
@@ -137,14 +137,14 @@ impl<'a> Evaluator<'a> {
         for (j, coordinate) in self.workspace.points_mut().iter_mut().enumerate() {
             let (center, half_width) = (space.center(j), space.half_width(j));
             for (lane, &number) in numbers.iter().enumerate() {
-                let xi = self.points[number / LANES * dimension + j].0[number % LANES];
+                let xi = self.points[number / BLOCK_POINTS * dimension + j].0[number % BLOCK_POINTS];
                 coordinate.0[lane] = (xi - center) / half_width;
             }
         }
         self.plan.evaluate(element, &mut self.workspace);
         let found = self.workspace.results();
         for (lane, &number) in numbers.iter().enumerate() {
-            copy_lane(found, lane, &mut self.results[number / LANES], number % LANES);
+            copy_lane(found, lane, &mut self.results[number / BLOCK_POINTS], number % BLOCK_POINTS);
         }
     }
 }
@@ -157,7 +157,7 @@ fn in_lanes(
 ) -> impl FnMut(usize, &mut [Lanes]) {
     let mut point = vec![0.0; dimension];
     move |start, points| {
-        for lane in 0..LANES.min(count - start) {
+        for lane in 0..BLOCK_POINTS.min(count - start) {
             set_point(start + lane, &mut point);
             points.iter_mut().zip(&point).for_each(|(coordinate, &xi)| coordinate.0[lane] = xi);
         }

@@ -4,7 +4,7 @@
 //! larger clusters are polynomials whose roots are found lane by lane. The values are those of [`Output::recombine`], bit by
 //! bit.
 
-use super::lanes::{LANES, Lanes};
+use super::lanes::{BLOCK_POINTS, Lanes};
 use super::results::Results;
 use crate::components::{Output, OutputKind, is_equal_frequency, is_safe_square, square_root};
 use num_complex::Complex;
@@ -36,7 +36,7 @@ fn pair(mean: [&Lanes; 2], constant: [&Lanes; 2], re: [&mut Lanes; 2], im: [&mut
     let ([re_1, re_2], [im_1, im_2]) = (re, im);
     let (mut root_re, mut root_im) = (Lanes::splat(0.0), Lanes::splat(0.0));
     square_roots(constant, &mut root_re, &mut root_im);
-    for lane in 0..LANES {
+    for lane in 0..BLOCK_POINTS {
         let (s_re, s_im) = (mean[0].0[lane], mean[1].0[lane]);
         let (r_re, r_im) = (root_re.0[lane], root_im.0[lane]);
         let (minus, plus) = ((s_re - r_re, s_im - r_im), (s_re + r_re, s_im + r_im));
@@ -51,7 +51,7 @@ fn pair(mean: [&Lanes; 2], constant: [&Lanes; 2], re: [&mut Lanes; 2], im: [&mut
 #[inline(always)]
 fn square_roots(c: [&Lanes; 2], root_re: &mut Lanes, root_im: &mut Lanes) {
     let mut all_safe = true;
-    for lane in 0..LANES {
+    for lane in 0..BLOCK_POINTS {
         let (re, im) = (-c[0].0[lane], -c[1].0[lane]);
         let square = re * re + im * im;
         all_safe &= is_safe_square(square);
@@ -62,7 +62,7 @@ fn square_roots(c: [&Lanes; 2], root_re: &mut Lanes, root_im: &mut Lanes) {
         root_im.0[lane] = if is_right { smaller_part } else { larger_part.copysign(im) };
     }
     if !all_safe {
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_POINTS {
             let root = square_root(-Complex::new(c[0].0[lane], c[1].0[lane]));
             (root_re.0[lane], root_im.0[lane]) = (root.re, root.im);
         }
@@ -73,7 +73,7 @@ fn square_roots(c: [&Lanes; 2], root_re: &mut Lanes, root_im: &mut Lanes) {
 fn lane_by_lane(output: &Output, components: &[Lanes], re: &mut [Lanes], im: &mut [Lanes]) {
     let mut values = vec![0.0; components.len()];
     let mut eigenvalues = Vec::with_capacity(re.len());
-    for lane in 0..LANES {
+    for lane in 0..BLOCK_POINTS {
         values.iter_mut().zip(components).for_each(|(value, component)| *value = component.0[lane]);
         eigenvalues.clear();
         output.recombine(&values, &mut eigenvalues);
@@ -88,7 +88,7 @@ fn lane_by_lane(output: &Output, components: &[Lanes], re: &mut [Lanes], im: &mu
 fn spectral_abscissa(growth_rates: &[Lanes], angular_frequencies: &[Lanes]) -> Lanes {
     let mut largest = Lanes::splat(f64::NEG_INFINITY);
     for (re, im) in growth_rates.iter().zip(angular_frequencies) {
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_POINTS {
             let (re, im, before) = (re.0[lane], im.0[lane], largest.0[lane]);
             let is_finite = re.abs() < f64::INFINITY && im.abs() < f64::INFINITY;
             let larger = if re > before { re } else { before };
@@ -131,7 +131,7 @@ mod tests {
             .collect();
         let output = pair_output();
         // Unusual numbers beside plain ones, and among their like.
-        for chunk in cases.chunks(LANES - 1) {
+        for chunk in cases.chunks(BLOCK_POINTS - 1) {
             let mut results = Results {
                 components: vec![Lanes::splat(0.25); 4],
                 growth_rates: vec![Lanes::splat(0.0); 2],

@@ -6,7 +6,7 @@
 use super::tally::Tally;
 use std::ops::Range;
 
-/// Samples summarised together, a multiple of [`crate::evaluation::LANES`]: part of the result's definition, since it fixes the order of sums.
+/// Samples summarised together, a multiple of [`crate::evaluation::BLOCK_POINTS`]: part of the result's definition, since it fixes the order of sums.
 const CHUNK: u64 = 4096;
 
 /// More of them where there are many elements, each of which has some points of a chunk to evaluate together.
@@ -15,7 +15,7 @@ const LARGEST_CHUNK: u64 = 1 << 16;
 
 /// The division of a question's samples, and what is kept of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layout {
+pub struct Division {
     pub(crate) cells: u64,
     pub(crate) replicates: u64,
     pub(crate) samples_per_series: u64,
@@ -29,7 +29,7 @@ pub struct Layout {
     pub(crate) is_sweep: bool,
 }
 
-impl Layout {
+impl Division {
     /// Samples of a chunk for a surrogate of so many elements.
     pub(crate) fn chunk_size(elements: usize) -> u64 {
         let by_elements = SAMPLES_PER_ELEMENT.saturating_mul(elements as u64);
@@ -95,9 +95,9 @@ impl Layout {
 mod tests {
     use super::*;
 
-    fn layout(cells: u64, replicates: u64, samples_per_series: u64) -> Layout {
-        let chunk = Layout::chunk_size(1);
-        Layout {
+    fn division(cells: u64, replicates: u64, samples_per_series: u64) -> Division {
+        let chunk = Division::chunk_size(1);
+        Division {
             cells,
             replicates,
             samples_per_series,
@@ -113,30 +113,30 @@ mod tests {
     #[test]
     fn every_sample_is_in_one_chunk_and_every_chunk_in_one_shard() {
         for (cells, replicates, samples) in [(1, 1, 1), (1, 1, 4096), (1, 16, 4097), (7, 1, 10_000), (3, 2, 8192)] {
-            let layout = layout(cells, replicates, samples);
+            let division = division(cells, replicates, samples);
             let mut counted = vec![0; (cells * replicates) as usize];
-            for chunk in 0..layout.chunks() {
-                let (cell, replicate, range) = layout.locate(chunk);
+            for chunk in 0..division.chunks() {
+                let (cell, replicate, range) = division.locate(chunk);
                 let series = &mut counted[cell * replicates as usize + replicate];
                 assert_eq!(range.start, *series);
                 *series = range.end;
             }
             assert!(counted.iter().all(|&count| count == samples));
-            assert_eq!(layout.samples_in(&(0..layout.chunks())), layout.samples());
+            assert_eq!(division.samples_in(&(0..division.chunks())), division.samples());
             for shards in [1, 2, 3, 17, 1000] {
                 let mut next = 0;
                 for shard in 0..shards {
-                    let range = layout.shard(shard, shards);
+                    let range = division.shard(shard, shards);
                     assert_eq!(range.start, next);
                     next = range.end;
                 }
-                assert_eq!(next, layout.chunks());
+                assert_eq!(next, division.chunks());
             }
         }
     }
 
     #[test]
     fn chunks_grow_with_the_number_of_elements() {
-        assert_eq!([1, 64, 65, 200, 1 << 40].map(Layout::chunk_size), [4096, 4096, 8192, 16_384, 65_536]);
+        assert_eq!([1, 64, 65, 200, 1 << 40].map(Division::chunk_size), [4096, 4096, 8192, 16_384, 65_536]);
     }
 }

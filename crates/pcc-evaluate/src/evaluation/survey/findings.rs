@@ -1,9 +1,9 @@
 //! What a survey finds, and how parts of it are put together.
 
-use super::division::Layout;
+use super::division::Division;
 use super::histogram::Histogram;
 use super::tally::Tally;
-use crate::probability::statistics::{Forest, Merge, Proportion, Share};
+use crate::probability::statistics::{Merge, MergeTree, Proportion, Share};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -26,17 +26,17 @@ pub struct Findings {
 #[serde(rename_all = "kebab-case")]
 enum Series {
     /// Some of its chunks.
-    Some(Forest<Tally>),
+    Some(MergeTree<Tally>),
     /// All of them, combined: nothing follows that the trees would be needed for.
     All(Tally),
 }
 
 impl Series {
     /// Combines the trees if all chunks are there.
-    fn settle(&mut self, layout: &Layout) {
+    fn settle(&mut self, division: &Division) {
         if let Self::Some(forest) = self
             && forest.first() == 0
-            && forest.end() == layout.chunks_per_series()
+            && forest.end() == division.chunks_per_series()
             && let Some(total) = forest.total()
         {
             *self = Self::All(total);
@@ -51,15 +51,15 @@ impl Series {
     }
 
     /// Whether this is what is known of chunks `chunks` of a series, and counts add up.
-    fn fits(&self, chunks: &Range<u64>, layout: &Layout) -> bool {
-        let all = 0..layout.chunks_per_series();
+    fn fits(&self, chunks: &Range<u64>, division: &Division) -> bool {
+        let all = 0..division.chunks_per_series();
         match self {
-            Self::All(tally) => *chunks == all && layout.fits(chunks, tally),
+            Self::All(tally) => *chunks == all && division.fits(chunks, tally),
             Self::Some(forest) => {
                 *chunks != all
                     && forest.is_consistent()
                     && (forest.first()..forest.end()) == *chunks
-                    && forest.parts().all(|(chunks, tally)| layout.fits(&chunks, tally))
+                    && forest.parts().all(|(chunks, tally)| division.fits(&chunks, tally))
             }
         }
     }
@@ -83,16 +83,16 @@ impl Findings {
         self.first..self.end
     }
 
-    pub(crate) fn push(&mut self, tally: Tally, layout: &Layout) {
-        let inside = self.end % layout.chunks_per_series();
+    pub(crate) fn push(&mut self, tally: Tally, division: &Division) {
+        let inside = self.end % division.chunks_per_series();
         if inside == 0 || self.series.is_empty() {
-            self.series.push(Series::Some(Forest::new(inside)));
+            self.series.push(Series::Some(MergeTree::new(inside)));
         }
         if let Some(series) = self.series.last_mut() {
             if let Series::Some(forest) = series {
                 forest.push(tally);
             }
-            series.settle(layout);
+            series.settle(division);
         }
         self.end += 1;
     }
@@ -102,19 +102,19 @@ impl Findings {
     }
 
     /// Adds what was found in the chunks that follow; nothing changes, and the answer is false, if `next` begins elsewhere.
-    pub fn append(&mut self, next: Self, layout: &Layout) -> bool {
+    pub fn append(&mut self, next: Self, division: &Division) -> bool {
         if next.first != self.end {
             return false;
         }
         let mut series = next.series.into_iter();
-        if !next.first.is_multiple_of(layout.chunks_per_series())
+        if !next.first.is_multiple_of(division.chunks_per_series())
             && let Some(own) = self.series.last_mut()
             && let Some(continued) = series.next()
         {
             if let (Series::Some(own), Series::Some(continued)) = (&mut *own, continued) {
                 own.append(continued);
             }
-            own.settle(layout);
+            own.settle(division);
         }
         self.series.extend(series);
         self.end = next.end;
@@ -126,11 +126,11 @@ impl Findings {
         true
     }
 
-    /// Whether this could have been found under such a layout: series that are complete but for the first and the last, with as many
+    /// Whether this could have been found under such a division: series that are complete but for the first and the last, with as many
     /// components, modes, events and bins, and counts that add up to the numbers of samples. What [`crate::evaluation::Survey::run`] finds always is; what a file says need not be.
-    pub fn fits(&self, layout: &Layout) -> bool {
-        let per_series = layout.chunks_per_series();
-        if self.first > self.end || self.end > layout.chunks() {
+    pub fn fits(&self, division: &Division) -> bool {
+        let per_series = division.chunks_per_series();
+        if self.first > self.end || self.end > division.chunks() {
             return false;
         }
         let series = self.first / per_series..self.end.div_ceil(per_series);
@@ -139,13 +139,13 @@ impl Findings {
             let start = number.saturating_mul(per_series);
             let first = self.first.max(start) - start;
             let end = self.end.min(start.saturating_add(per_series)) - start;
-            series.fits(&(first..end), layout)
+            series.fits(&(first..end), division)
         });
-        let samples = layout.samples_in(&self.chunks());
+        let samples = division.samples_in(&self.chunks());
         let bins = self.histograms.iter().map(|histogram| histogram.counts.len());
         self.series.len() as u64 == count
             && tallies
-            && bins.eq(layout.bins.iter().copied())
+            && bins.eq(division.bins.iter().copied())
             && self.histograms.iter().all(|histogram| histogram.checked_samples() == Some(samples))
     }
 
@@ -160,16 +160,16 @@ impl Findings {
     }
 
     /// What is said of every point of the sweeps that is complete, of the one point without sweeps in any case.
-    pub fn answer(&self, layout: &Layout) -> Answer {
-        let is_complete = self.chunks() == (0..layout.chunks());
-        let replicates = layout.replicates as usize;
+    pub fn answer(&self, division: &Division) -> Answer {
+        let is_complete = self.chunks() == (0..division.chunks());
+        let replicates = division.replicates as usize;
         let cells = self.series.chunks(replicates).filter_map(|series| {
             let whole = series.iter().filter_map(|series| match series {
                 Series::All(tally) => Some(tally.clone()),
                 Series::Some(_) => None,
             });
             let whole: Vec<Tally> = whole.collect();
-            if layout.is_sweep && whole.len() < replicates {
+            if division.is_sweep && whole.len() < replicates {
                 return None;
             }
             // Of replicates that can be compared with others, or of all there is.

@@ -1,7 +1,7 @@
 //! Counts in equal bins with fixed edges: they add up to the same whatever the samples were divided into.
 
 use super::question::Bins;
-use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use serde::{Deserialize, Serialize};
 
 /// Samples per bin, and those outside.
@@ -43,7 +43,7 @@ impl Histogram {
     pub(crate) fn add(&mut self, values: &Lanes, lanes: usize, bins: &Bins) {
         let scale = f64::from(bins.bins) / (bins.upper - bins.lower);
         let mut places = Lanes::splat(0.0);
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_POINTS {
             places.0[lane] = (values.0[lane] - bins.lower) * scale;
         }
         let last = self.counts.len() - 1;
@@ -103,8 +103,10 @@ mod tests {
         let mut histogram = Histogram::new(1000);
         for start in 0..100 {
             let mut values = Lanes::splat(0.0);
-            (0..LANES).for_each(|lane| values.0[lane] = ((start * LANES + lane) as f64 / (100 * LANES) as f64).powi(2));
-            histogram.add(&values, LANES, &bins);
+            (0..BLOCK_POINTS).for_each(|lane| {
+                values.0[lane] = ((start * BLOCK_POINTS + lane) as f64 / (100 * BLOCK_POINTS) as f64).powi(2)
+            });
+            histogram.add(&values, BLOCK_POINTS, &bins);
         }
         for level in [0.01, 0.3, 0.5, 0.99, 1.0] {
             let found = histogram.quantile(&bins, level).unwrap();

@@ -5,7 +5,7 @@
 //! samples.
 
 use super::question::Question;
-use super::survey::{Progress, Survey};
+use super::survey::{Survey, Surveyed};
 use crate::components::Summary;
 use crate::evaluation::EvalError;
 use crate::foundation::{InstructionSet, Interrupted, Observer};
@@ -25,8 +25,8 @@ pub fn monte_carlo(
     let question = Question::plain(samples, seed);
     // The plain question fits every surrogate, if only it asks for samples.
     let survey = Survey::new(surrogate, &question, InstructionSet::best()).map_err(|_| EvalError::NoSamples)?;
-    match survey.run(0..survey.layout().chunks(), observer)? {
-        Progress::Interrupted(_) => Err(Interrupted.into()),
-        Progress::Complete(findings) => findings.total().map(|tally| tally.summary).ok_or(EvalError::NoSamples),
+    match survey.run(0..survey.division().chunks(), observer)? {
+        Surveyed::Interrupted(_) => Err(Interrupted.into()),
+        Surveyed::Complete(findings) => findings.total().map(|tally| tally.summary).ok_or(EvalError::NoSamples),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::quantity::Quantity;
 use super::question::{Bins, Condition, Question};
-use super::survey::{Progress, Survey};
+use super::survey::{Survey, Surveyed};
 use super::survey_error::SurveyError;
 use crate::components::Summary;
 use crate::evaluation::EvalError;
@@ -51,9 +51,9 @@ impl Pilot {
     pub fn new(surrogate: &Surrogate, seed: u64, conditions: &[Condition]) -> Result<Self, PilotError> {
         let question = Question { conditions: conditions.to_vec(), ..Question::plain(SAMPLES, seed) };
         let survey = Survey::new(surrogate, &question, InstructionSet::best())?;
-        match survey.run(0..survey.layout().chunks(), &Silent)? {
-            Progress::Complete(findings) => Ok(Self(findings.total().ok_or(EvalError::NoSamples)?.summary)),
-            Progress::Interrupted(_) => Err(EvalError::from(Interrupted).into()),
+        match survey.run(0..survey.division().chunks(), &Silent)? {
+            Surveyed::Complete(findings) => Ok(Self(findings.total().ok_or(EvalError::NoSamples)?.summary)),
+            Surveyed::Interrupted(_) => Err(EvalError::from(Interrupted).into()),
         }
     }
 

@@ -1,7 +1,7 @@
 //! What can be asked about: max Re λ, parts of modes, components.
 
 use crate::components::damping_ratio;
-use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::evaluation::kernel::results::Results;
 use crate::surrogate::Surrogate;
 use std::f64::consts::TAU;
@@ -80,7 +80,7 @@ impl Quantity {
 #[inline(always)]
 pub(crate) fn damping_ratios(growth_rate: &Lanes, angular_frequency: &Lanes) -> Lanes {
     let mut ratios = Lanes::splat(0.0);
-    for lane in 0..LANES {
+    for lane in 0..BLOCK_POINTS {
         let (re, im) = (growth_rate.0[lane], angular_frequency.0[lane]);
         ratios.0[lane] = damping_ratio(re, im);
     }

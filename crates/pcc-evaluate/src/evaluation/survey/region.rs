@@ -2,7 +2,7 @@
 
 use super::question::Question;
 use super::survey_error::SurveyError;
-use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::probability::inputs::InputSpace;
 
 /// Replicates of all points of all sweeps together, at most: their counts are kept in memory, some 500 bytes each.
@@ -52,7 +52,7 @@ impl Region {
     #[inline(always)]
     pub(crate) fn place_lanes(&self, input: usize, units: &mut Lanes) {
         let (lower, width) = (self.lower[input], self.width[input]);
-        for lane in 0..LANES {
+        for lane in 0..BLOCK_POINTS {
             units.0[lane] = width.mul_add(units.0[lane], lower);
         }
     }

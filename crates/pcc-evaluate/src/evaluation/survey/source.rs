@@ -2,7 +2,7 @@
 
 use super::question::Sampler;
 use super::region::Region;
-use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::probability::random::{LatinHypercubeSampler, Purpose, SobolSequence, seed_key, unit_interval, unit_pairs};
 use pulp::{Simd, WithSimd};
 
@@ -50,7 +50,7 @@ impl WithSimd for Drawing<'_> {
         match source {
             Source::MonteCarlo { seed } => random_units(*seed, first, points),
             Source::Sobol(sequence) => {
-                let mut cells = [0; LANES];
+                let mut cells = [0; BLOCK_POINTS];
                 for (input, units) in points.iter_mut().enumerate() {
                     sequence.cells(input, first, &mut cells);
                     units.0.iter_mut().zip(cells).for_each(|(unit, cell)| *unit = unit_interval(cell));
@@ -71,7 +71,7 @@ impl WithSimd for Drawing<'_> {
 /// Two inputs at a time, as the generator yields them.
 #[inline(always)]
 fn random_units(seed: u64, first: u64, points: &mut [Lanes]) {
-    let mut unused = [0.0; LANES];
+    let mut unused = [0.0; BLOCK_POINTS];
     for (pair, inputs) in (0u32..).zip(points.chunks_mut(2)) {
         match inputs {
             [even, odd] => unit_pairs(seed, Purpose::Evaluation, first, pair, &mut even.0, &mut odd.0),

@@ -1,9 +1,9 @@
 //! A question put to a surrogate, worked off in chunks of samples.
 //!
 //! Samples are addressed by number, counts are integers, and moments are combined along a fixed tree
-//! ([`crate::probability::statistics::Forest`]), so the answer depends neither on the number of threads nor on shards.
+//! ([`crate::probability::statistics::MergeTree`]), so the answer depends neither on the number of threads nor on shards.
 
-use super::division::Layout;
+use super::division::Division;
 use super::findings::Findings;
 use super::histogram::Histogram;
 use super::quantity::Quantity;
@@ -13,7 +13,7 @@ use super::source::{Drawing, Source};
 use super::survey_error::SurveyError;
 use super::tally::{Adding, Gathering, Tally, Watch};
 use crate::evaluation::EvalError;
-use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::Evaluator;
 use crate::evaluation::kernel::results::Results;
@@ -32,18 +32,18 @@ const CHUNKS_IN_FLIGHT: u64 = 1024;
 ///
 /// ```
 /// use pcc_evaluate::artifact;
-/// use pcc_evaluate::evaluation::{Progress, Question, Survey, Sweep};
+/// use pcc_evaluate::evaluation::{Surveyed, Question, Survey, Sweep};
 /// use pcc_evaluate::foundation::{InstructionSet, Silent};
 /// let surrogate = artifact::decode(include_bytes!("../../../../../surrogates/clutch-r2.pcc"))?.surrogate;
 /// let friction = Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 6 };
 /// let question = Question { sweeps: vec![friction], ..Question::plain(10_000, 1) };
 /// let survey = Survey::new(&surrogate, &question, InstructionSet::best())?;
 /// // Two shards, one after the other; they could be on two machines.
-/// let shards = [0, 1].map(|shard| survey.run(survey.layout().shard(shard, 2), &Silent));
-/// let [Ok(Progress::Complete(mut all)), Ok(Progress::Complete(rest))] = shards else { panic!() };
-/// assert!(all.append(rest, survey.layout()));
+/// let shards = [0, 1].map(|shard| survey.run(survey.division().shard(shard, 2), &Silent));
+/// let [Ok(Surveyed::Complete(mut all)), Ok(Surveyed::Complete(rest))] = shards else { panic!() };
+/// assert!(all.append(rest, survey.division()));
 /// let shares: Vec<f64> = all
-///     .answer(survey.layout())
+///     .answer(survey.division())
 ///     .cells
 ///     .iter()
 ///     .map(|cell| cell.share(0.95, |tally| tally.summary.stable).value)
@@ -55,7 +55,7 @@ const CHUNKS_IN_FLIGHT: u64 = 1024;
 pub struct Survey<'a> {
     surrogate: &'a Surrogate,
     plan: Plan,
-    layout: Layout,
+    division: Division,
     /// One box per point of the sweeps.
     regions: Regions,
     /// One per replicate.
@@ -67,7 +67,7 @@ pub struct Survey<'a> {
 
 /// The end of a survey: all that was asked for, or what there was when the user asked to stop.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Progress {
+pub enum Surveyed {
     /// All chunks of the range.
     Complete(Findings),
     /// The chunks before the first that was not done; without histograms.
@@ -103,11 +103,11 @@ impl<'a> Survey<'a> {
         let (watches, binned) = (watches(surrogate, question)?, binned(surrogate, question)?);
         let is_sweep = !question.sweeps.is_empty();
         let kept = |count| if is_sweep { 0 } else { count };
-        let layout = Layout {
+        let division = Division {
             cells,
             replicates: sources.len() as u64,
             samples_per_series,
-            chunk: Layout::chunk_size(surrogate.mesh.elements().len()),
+            chunk: Division::chunk_size(surrogate.mesh.elements().len()),
             components: kept(surrogate.component_count()),
             modes: kept(surrogate.modes().len()),
             events: watches.len(),
@@ -115,12 +115,12 @@ impl<'a> Survey<'a> {
             is_sweep,
         };
         let plan = Plan::with_instructions(surrogate, instructions);
-        Ok(Self { surrogate, plan, layout, regions, sources, watches, binned })
+        Ok(Self { surrogate, plan, division, regions, sources, watches, binned })
     }
 
     /// How the samples are divided.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
+    pub fn division(&self) -> &Division {
+        &self.division
     }
 
     /// The boxes that samples are drawn from: one, or one for each point of the sweeps.
@@ -133,14 +133,14 @@ impl<'a> Survey<'a> {
     /// # Errors
     ///
     /// [`EvalError::NotFinite`] for the first sample whose max Re λ is not a finite number.
-    pub fn run(&self, chunks: Range<u64>, observer: &dyn Observer) -> Result<Progress, EvalError> {
-        observer.begin("samples", self.layout.samples_in(&chunks));
+    pub fn run(&self, chunks: Range<u64>, observer: &dyn Observer) -> Result<Surveyed, EvalError> {
+        observer.begin("samples", self.division.samples_in(&chunks));
         let result = self.run_observed(chunks, observer);
         observer.finish();
         result
     }
 
-    fn run_observed(&self, chunks: Range<u64>, observer: &dyn Observer) -> Result<Progress, EvalError> {
+    fn run_observed(&self, chunks: Range<u64>, observer: &dyn Observer) -> Result<Surveyed, EvalError> {
         let mut findings = Findings::new(chunks.start);
         let unused = Mutex::new(Vec::new());
         let mut next = chunks.start;
@@ -153,8 +153,8 @@ impl<'a> Survey<'a> {
                 .collect();
             for tally in tallies {
                 match tally {
-                    Ok(tally) => findings.push(tally, &self.layout),
-                    Err(EvalError::Interrupted(_)) => return Ok(Progress::Interrupted(findings)),
+                    Ok(tally) => findings.push(tally, &self.division),
+                    Err(EvalError::Interrupted(_)) => return Ok(Surveyed::Interrupted(findings)),
                     Err(error) => return Err(error),
                 }
             }
@@ -164,7 +164,7 @@ impl<'a> Survey<'a> {
             histograms.iter_mut().zip(&found).for_each(|(own, added)| own.merge(added));
         }
         findings.set_histograms(histograms);
-        Ok(Progress::Complete(findings))
+        Ok(Surveyed::Complete(findings))
     }
 
     fn empty_histograms(&self) -> Vec<Histogram> {
@@ -197,9 +197,9 @@ impl<'s> Worker<'s> {
     fn run(&mut self, chunk: u64, observer: &dyn Observer) -> Result<Tally, EvalError> {
         observer.check()?;
         let (survey, histograms) = (self.survey, &mut self.histograms);
-        let (cell, replicate, samples) = survey.layout.locate(chunk);
+        let (cell, replicate, samples) = survey.division.locate(chunk);
         let count = (samples.end - samples.start) as usize;
-        let Layout { components, modes, .. } = survey.layout;
+        let Division { components, modes, .. } = survey.division;
         let shifts = survey.surrogate.decision.band_shifts();
         let mut gathering = Gathering::new(components, modes, shifts, &survey.watches);
         let region = survey.regions.at(cell);
@@ -227,7 +227,7 @@ impl<'s> Worker<'s> {
         self.evaluator.each_block(count, draw, |results, lanes| {
             let bad = results.max_re.0[..lanes].iter().position(|max_re| !max_re.is_finite());
             found = found.or(bad.map(|lane| seen + lane));
-            seen += LANES;
+            seen += BLOCK_POINTS;
         });
         let mut points = vec![Lanes::splat(0.0); inputs.dimension()];
         survey.draw(region, replicate, samples.start + found.unwrap_or(0) as u64, &mut points);

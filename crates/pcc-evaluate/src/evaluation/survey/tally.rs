@@ -5,13 +5,13 @@
 
 use super::quantity::{Quantity, damping_ratios};
 use crate::components::{ModeSummary, Summary};
-use crate::evaluation::kernel::lanes::{LANES, Lanes};
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::evaluation::kernel::results::Results;
 use crate::probability::statistics::{Merge, Moments};
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-/// Interleaved partial sums: a divisor of [`LANES`].
+/// Interleaved partial sums: a divisor of [`BLOCK_POINTS`].
 const PARTS: usize = 16;
 
 /// What was counted and summed over some samples.
@@ -171,7 +171,7 @@ impl WithSimd for Adding<'_, '_> {
 #[inline(always)]
 fn count(values: &Lanes, lanes: usize, holds: impl Fn(f64) -> bool) -> u64 {
     match lanes {
-        LANES => values.0.iter().map(|&value| u64::from(holds(value))).sum(),
+        BLOCK_POINTS => values.0.iter().map(|&value| u64::from(holds(value))).sum(),
         _ => values.0[..lanes].iter().map(|&value| u64::from(holds(value))).sum(),
     }
 }
@@ -192,7 +192,7 @@ impl Sums {
         }
         let mut sums = *self;
         match lanes {
-            LANES => {
+            BLOCK_POINTS => {
                 for row in values.0.as_chunks::<PARTS>().0 {
                     row.iter().enumerate().for_each(|(part, &value)| sums.add_one(part, value));
                 }

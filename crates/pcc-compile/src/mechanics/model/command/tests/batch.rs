@@ -1,8 +1,8 @@
 //! Batches: tables in any order, with what is missing and what failed.
 
 use super::*;
-use crate::mechanics::model::program::ProgramFailure;
-use crate::mechanics::model::program::results_table::TableError;
+use crate::mechanics::model::command::CommandFailure;
+use crate::mechanics::model::command::results_table::TableError;
 
 /// Answers as [`ECHO`], from the last row to the first; `$skip` and `$fail` are values of a that are not answered.
 const TABLE: &str = r#"echo "$(tail -n +2 points.csv | cut -d, -f2 | tr '\n' ' ')" >> '{study}/log'
@@ -14,8 +14,8 @@ tail -n +2 points.csv | sort -t, -k1 -rn | while IFS=, read -r run a b c; do
 done; } > results.csv
 "#;
 
-fn batch(folder: &TempDir, retries: u32, script: &str) -> Program {
-    Program::new(ProgramSettings { mode: Mode::Batch, retries, ..settings(folder.path(), script) })
+fn batch(folder: &TempDir, retries: u32, script: &str) -> CommandModel {
+    CommandModel::new(CommandSettings { mode: Mode::Batch, retries, ..settings(folder.path(), script) })
 }
 
 fn points(values: &[f64]) -> Vec<Vec<f64>> {
@@ -43,8 +43,8 @@ fn runs_that_failed_or_are_missing_do_not_harm_the_others() {
     let answers = program.run_batch(&points(&[1.0, 2.0, 3.0, 4.0, 5.0]));
     let failure = |i: usize| answers[i].as_ref().unwrap_err().failure.clone();
     assert!(answers[0].is_ok() && answers[4].is_ok());
-    assert_eq!(failure(1), ProgramFailure::NoRow { run: 2 });
-    assert_eq!(failure(2), ProgramFailure::Reported { text: "no convergence".to_owned() });
+    assert_eq!(failure(1), CommandFailure::NoRow { run: 2 });
+    assert_eq!(failure(2), CommandFailure::Reported { text: "no convergence".to_owned() });
     assert_eq!(failure(3), failure(2));
     let outputs: Vec<_> = answers.iter().filter_map(|answer| Some(&answer.as_ref().err()?.output)).collect();
     assert_eq!(outputs, ["hello", "", ""]);
@@ -70,16 +70,16 @@ fn only_what_failed_is_tried_again() {
 fn a_process_that_fails_answers_nothing() {
     let folder = folder();
     for (script, expected) in [
-        (format!("{TABLE}\nexit 4"), ProgramFailure::ExitStatus { code: 4 }),
-        ("true".to_owned(), ProgramFailure::NoResults { file: "results.csv" }),
-        (": > results.csv".to_owned(), ProgramFailure::Table(TableError::Empty)),
+        (format!("{TABLE}\nexit 4"), CommandFailure::ExitStatus { code: 4 }),
+        ("true".to_owned(), CommandFailure::NoResults { file: "results.csv" }),
+        (": > results.csv".to_owned(), CommandFailure::Table(TableError::Empty)),
         (
             "printf 'run,re_1,im_1,re_2,im_2\n0,1,2,3,4\n' > results.csv".to_owned(),
-            ProgramFailure::UnknownRun { line: 2, run: 0, count: 2 },
+            CommandFailure::UnknownRun { line: 2, run: 0, count: 2 },
         ),
         (
             "printf 'run,re_1,im_1,re_2,im_2\n1,1,2,3,nan\n' > results.csv".to_owned(),
-            ProgramFailure::Table(TableError::NotFinite {
+            CommandFailure::Table(TableError::NotFinite {
                 line: 2,
                 column: "im_2".to_owned(),
                 found: "nan".to_owned(),
@@ -97,8 +97,8 @@ fn names_with_another_meaning_are_refused() {
     let folder = folder();
     for name in ["run", "error", " re_1", "im_12"] {
         let inputs = vec!["a".to_owned(), name.to_owned()];
-        let program = Program::new(ProgramSettings { inputs, ..batch(&folder, 3, TABLE).settings().clone() });
+        let program = CommandModel::new(CommandSettings { inputs, ..batch(&folder, 3, TABLE).settings().clone() });
         let error = program.run(&[1.0, 2.0]).unwrap_err();
-        assert!(matches!(error.failure, ProgramFailure::Table(TableError::ReservedName { .. })), "{error}");
+        assert!(matches!(error.failure, CommandFailure::Table(TableError::ReservedName { .. })), "{error}");
     }
 }

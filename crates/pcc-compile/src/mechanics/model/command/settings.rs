@@ -5,7 +5,7 @@ use std::time::Duration;
 
 /// How a program is run and what it must answer.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ProgramSettings {
+pub struct CommandSettings {
     /// The program and its arguments. In the arguments, and in the program, `{study}` stands for the study's folder and
     /// `{work}` for the folder of the run; nothing else is replaced.
     pub command: Vec<String>,

@@ -3,7 +3,7 @@
 //! Their names are made of hexadecimal digits and numbers only, whatever inputs are called. A number is never used
 //! again while its folder exists: the program of a build that was killed may still be writing in it.
 
-use super::error::ProgramFailure;
+use super::error::CommandFailure;
 use super::printable;
 use pcc_evaluate::foundation::sha256;
 use std::fs::{self, File};
@@ -22,7 +22,7 @@ const REMOVALS: usize = 3;
 const BETWEEN_REMOVALS: Duration = Duration::from_millis(10);
 
 /// Creates `<kind>-<digits>-<number>` in `work_folder`, with digits that depend on `points` and the first free number.
-pub(super) fn create(work_folder: &Path, kind: &str, points: &[&[f64]]) -> Result<PathBuf, ProgramFailure> {
+pub(super) fn create(work_folder: &Path, kind: &str, points: &[&[f64]]) -> Result<PathBuf, CommandFailure> {
     // Absolute, because the program runs in another folder.
     let work_folder = std::path::absolute(work_folder).map_err(|error| failure(work_folder, &error))?;
     fs::create_dir_all(&work_folder).map_err(|error| failure(&work_folder, &error))?;
@@ -54,10 +54,10 @@ pub(super) fn remove(folder: &Path) {
 }
 
 /// Opens a file that the program should have written.
-pub(super) fn open_results(folder: &Path, file: &'static str) -> Result<File, ProgramFailure> {
+pub(super) fn open_results(folder: &Path, file: &'static str) -> Result<File, CommandFailure> {
     let path = folder.join(file);
     open_regular(&path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => ProgramFailure::NoResults { file },
+        io::ErrorKind::NotFound => CommandFailure::NoResults { file },
         _ => failure(&path, &error),
     })
 }
@@ -72,8 +72,8 @@ pub(super) fn open_regular(path: &Path) -> io::Result<File> {
 }
 
 /// Trouble with a folder or a file.
-pub(super) fn failure(path: &Path, error: &io::Error) -> ProgramFailure {
-    ProgramFailure::Folder { path: printable::path(path), cause: error.to_string() }
+pub(super) fn failure(path: &Path, error: &io::Error) -> CommandFailure {
+    CommandFailure::Folder { path: printable::path(path), cause: error.to_string() }
 }
 
 fn digits(points: &[&[f64]]) -> String {
@@ -98,6 +98,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("work");
         fs::write(&path, "").unwrap();
-        assert!(matches!(create(&path, "run", &[]), Err(ProgramFailure::Folder { .. })));
+        assert!(matches!(create(&path, "run", &[]), Err(CommandFailure::Folder { .. })));
     }
 }

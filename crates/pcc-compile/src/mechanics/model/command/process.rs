@@ -2,8 +2,8 @@
 //!
 //! A program has a process group of its own, so that whatever it starts can be ended with it.
 
-use super::error::ProgramFailure;
-use super::settings::ProgramSettings;
+use super::error::CommandFailure;
+use super::settings::CommandSettings;
 use super::{captured, command_line, printable};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -21,7 +21,7 @@ const PAUSES_PER_TIME: u32 = 64;
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Runs the program in `folder`; returns once it has ended, and fails unless it ended well.
-pub(super) fn run(settings: &ProgramSettings, folder: &Path, interrupted: &AtomicBool) -> Result<(), ProgramFailure> {
+pub(super) fn run(settings: &CommandSettings, folder: &Path, interrupted: &AtomicBool) -> Result<(), CommandFailure> {
     let mut command = command_line::command(settings, folder)?;
     let (output, error) = captured::create(folder)?;
     command.stdin(Stdio::null()).stdout(output).stderr(error);
@@ -36,21 +36,21 @@ pub(super) fn run(settings: &ProgramSettings, folder: &Path, interrupted: &Atomi
     }
 }
 
-fn wait(child: &mut Child, timeout: Option<Duration>, interrupted: &AtomicBool) -> Result<ExitStatus, ProgramFailure> {
+fn wait(child: &mut Child, timeout: Option<Duration>, interrupted: &AtomicBool) -> Result<ExitStatus, CommandFailure> {
     let start = Instant::now();
     loop {
         match child.try_wait() {
             Ok(Some(status)) => return Ok(status),
             Ok(None) => {}
-            Err(error) => return Err(ProgramFailure::Lost { cause: error.to_string() }),
+            Err(error) => return Err(CommandFailure::Lost { cause: error.to_string() }),
         }
         if interrupted.load(Ordering::Relaxed) {
-            return Err(ProgramFailure::Interrupted);
+            return Err(CommandFailure::Interrupted);
         }
         let elapsed = start.elapsed();
         let left = timeout.map_or(Duration::MAX, |limit| limit.saturating_sub(elapsed));
         match timeout {
-            Some(limit) if left.is_zero() => return Err(ProgramFailure::TimedOut { limit }),
+            Some(limit) if left.is_zero() => return Err(CommandFailure::TimedOut { limit }),
             _ => thread::sleep(pause(elapsed).min(left)),
         }
     }
@@ -60,27 +60,27 @@ fn pause(elapsed: Duration) -> Duration {
     (elapsed / PAUSES_PER_TIME).clamp(SHORTEST_PAUSE, LONGEST_PAUSE)
 }
 
-fn check(status: ExitStatus) -> Result<(), ProgramFailure> {
+fn check(status: ExitStatus) -> Result<(), CommandFailure> {
     #[cfg(unix)]
     if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
-        return Err(ProgramFailure::Signal { signal });
+        return Err(CommandFailure::Signal { signal });
     }
     match status.code() {
         Some(0) => Ok(()),
-        Some(code) => Err(ProgramFailure::ExitStatus { code }),
-        None => Err(ProgramFailure::Lost { cause: status.to_string() }),
+        Some(code) => Err(CommandFailure::ExitStatus { code }),
+        None => Err(CommandFailure::Lost { cause: status.to_string() }),
     }
 }
 
-fn not_started(command: &Command, error: &io::Error) -> ProgramFailure {
+fn not_started(command: &Command, error: &io::Error) -> CommandFailure {
     let path = Path::new(command.get_program());
     let program = printable::path(path);
     if error.kind() != io::ErrorKind::NotFound {
-        ProgramFailure::NotStarted { program, cause: error.to_string() }
+        CommandFailure::NotStarted { program, cause: error.to_string() }
     } else if path.is_absolute() && path.exists() {
-        ProgramFailure::NotStarted { program, cause: "the interpreter in its first line is not found".to_owned() }
+        CommandFailure::NotStarted { program, cause: "the interpreter in its first line is not found".to_owned() }
     } else {
-        ProgramFailure::NotFound { program }
+        CommandFailure::NotFound { program }
     }
 }
 

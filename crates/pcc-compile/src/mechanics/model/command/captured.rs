@@ -3,7 +3,7 @@
 //! They are files in the folder of the run, not pipes: a pipe that nobody empties stops the program, and one that a
 //! grandchild keeps open never ends.
 
-use super::error::ProgramFailure;
+use super::error::CommandFailure;
 use super::{folder, printable};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -20,7 +20,7 @@ const CHARACTERS: usize = printable::MESSAGE_LENGTH;
 const LAST_BYTES: u64 = 16 << 10;
 
 /// Creates the files for standard output and standard error.
-pub(super) fn create(folder: &Path) -> Result<(File, File), ProgramFailure> {
+pub(super) fn create(folder: &Path) -> Result<(File, File), CommandFailure> {
     let create = |name| {
         let path = folder.join(name);
         File::create_new(&path).map_err(|error| folder::failure(&path, &error))

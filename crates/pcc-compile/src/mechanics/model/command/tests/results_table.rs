@@ -1,6 +1,6 @@
 //! Tables, right and wrong.
 
-use crate::mechanics::model::program::results_table::{
+use crate::mechanics::model::command::results_table::{
     LARGEST_CELL, LARGEST_ROW, ResultRow, TableError, read_results, write_points,
 };
 use nalgebra::Complex;

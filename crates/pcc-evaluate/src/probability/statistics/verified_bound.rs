@@ -34,14 +34,14 @@ const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::probability::statistics::{Discordance, Proportion};
+/// use pcc_evaluate::probability::statistics::{DiscordantCounts, Proportion};
 /// let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-/// let discordance = Discordance { samples: 300, falsely_stable: 2, falsely_unstable: 0 };
+/// let discordance = DiscordantCounts { samples: 300, falsely_stable: 2, falsely_unstable: 0 };
 /// let bound = discordance.bound(surrogate, 0.95);
 /// assert!(bound.lower > 0.36 && bound.upper < 0.42);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Discordance {
+pub struct DiscordantCounts {
     /// Number of fresh points, at least one.
     pub samples: u64,
     /// Number of points that the surrogate calls stable and the model unstable.
@@ -50,7 +50,7 @@ pub struct Discordance {
     pub falsely_unstable: u64,
 }
 
-impl Discordance {
+impl DiscordantCounts {
     /// An interval that holds the model's stability proportion p with probability `level` or more, whatever the
     /// surrogate.
     ///
@@ -104,7 +104,7 @@ mod tests {
         let mut evaluation = Stream::new(7, Purpose::Evaluation, repeat);
         let hits = (0..surrogate_samples).filter(|_| evaluation.next_unit() < truth.surrogate()).count() as u64;
         let mut certification = Stream::new(7, Purpose::Certification, repeat);
-        let mut seen = Discordance { samples: fresh, falsely_stable: 0, falsely_unstable: 0 };
+        let mut seen = DiscordantCounts { samples: fresh, falsely_stable: 0, falsely_unstable: 0 };
         for _ in 0..fresh {
             let unit = certification.next_unit();
             if unit < truth.falsely_stable {
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn no_disagreement_leaves_the_width_of_what_may_have_been_missed() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = Discordance { samples: 100, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 100, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
         // One-sided 0.245 α of 100 points without a hit: 1 − (0.245 · 0.05)^(1/100).
         let missed = 1.0 - (0.245f64 * 0.05).powf(0.01);
         let own = surrogate.clopper_pearson(0.999);
@@ -155,16 +155,18 @@ mod tests {
     #[test]
     fn disagreement_shifts_the_bound_to_the_side_of_the_model() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let optimistic = Discordance { samples: 500, falsely_stable: 60, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let optimistic =
+            DiscordantCounts { samples: 500, falsely_stable: 60, falsely_unstable: 0 }.bound(surrogate, LEVEL);
         assert!(optimistic.lower < 0.28 && 0.28 < optimistic.upper && optimistic.upper < 0.4, "{optimistic:?}");
-        let pessimistic = Discordance { samples: 500, falsely_stable: 0, falsely_unstable: 60 }.bound(surrogate, LEVEL);
+        let pessimistic =
+            DiscordantCounts { samples: 500, falsely_stable: 0, falsely_unstable: 60 }.bound(surrogate, LEVEL);
         assert!(pessimistic.upper > 0.52 && 0.52 > pessimistic.lower && pessimistic.lower > 0.4, "{pessimistic:?}");
     }
 
     #[test]
     fn a_perfect_surrogate_says_more_than_the_model_runs_alone() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = Discordance { samples: 300, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 300, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
         let alone = Proportion { hits: 120, samples: 300 }.clopper_pearson(LEVEL);
         assert!(width(bound) < 0.4 * width(alone), "{bound:?}, {alone:?}");
     }
@@ -173,7 +175,8 @@ mod tests {
     fn bound_stays_within_zero_and_one() {
         for hits in [0, 1_000_000] {
             let surrogate = Proportion { hits, samples: 1_000_000 };
-            let bound = Discordance { samples: 50, falsely_stable: 5, falsely_unstable: 5 }.bound(surrogate, LEVEL);
+            let bound =
+                DiscordantCounts { samples: 50, falsely_stable: 5, falsely_unstable: 5 }.bound(surrogate, LEVEL);
             assert!(0.0 <= bound.lower && bound.lower <= bound.upper && bound.upper <= 1.0, "{bound:?}");
         }
     }
@@ -181,7 +184,7 @@ mod tests {
     #[test]
     fn nothing_is_known_without_fresh_points() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = Discordance { samples: 0, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 0, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
         assert_eq!((bound.lower, bound.upper), (0.0, 1.0));
     }
 }

@@ -36,7 +36,8 @@ fn arguments_arrive_unchanged() {
         .unwrap();
     let mut command = vec!["sh".to_owned(), "{study}/show.sh".to_owned()];
     command.extend(HOSTILE.map(str::to_owned));
-    let error = Program::new(ProgramSettings { command, ..settings(folder.path(), "") }).run(&[1.0, 2.0]).unwrap_err();
+    let error =
+        CommandModel::new(CommandSettings { command, ..settings(folder.path(), "") }).run(&[1.0, 2.0]).unwrap_err();
     let seen = fs::read_to_string(error.folder.unwrap().join("arguments")).unwrap();
     let expected = HOSTILE.map(|word| word.replace("{study}", folder.path().join("study").to_str().unwrap()) + "\0");
     assert_eq!(seen, expected.concat());
@@ -49,8 +50,8 @@ fn names_are_data_in_both_kinds_of_files() {
     let inputs: Vec<String> = HOSTILE.iter().map(|&name| name.to_owned()).collect();
     let point: Vec<f64> = (0..inputs.len()).map(|k| -(k as f64)).collect();
     let run = |mode| {
-        let settings = ProgramSettings { mode, inputs: inputs.clone(), ..settings(folder.path(), "exit 9") };
-        Program::new(settings).run(&point).unwrap_err().folder.unwrap()
+        let settings = CommandSettings { mode, inputs: inputs.clone(), ..settings(folder.path(), "exit 9") };
+        CommandModel::new(settings).run(&point).unwrap_err().folder.unwrap()
     };
     let text = fs::read(run(Mode::Each).join("params.json")).unwrap();
     let parameters: serde_json::Value = serde_json::from_slice(&text).unwrap();
@@ -72,8 +73,8 @@ fn a_shell_gets_paths_as_variables() {
     fs::create_dir_all(&study_folder).unwrap();
     fs::write(study_folder.join("model.sh"), ECHO).unwrap();
     let command = vec!["a=1; sh \"{study}/model.sh\" && [ -f \"{work}/params.json\" ] && echo ${a} {b}".to_owned()];
-    let settings = ProgramSettings { command, shell: true, study_folder, ..settings(folder.path(), "") };
-    let program = Program::new(ProgramSettings { keep: Keep::Always, ..settings });
+    let settings = CommandSettings { command, shell: true, study_folder, ..settings(folder.path(), "") };
+    let program = CommandModel::new(CommandSettings { keep: Keep::Always, ..settings });
     assert_same_bits(&program.run(&[1.0, 2.0]).unwrap(), &echoed(&[1.0, 2.0]));
     let run = folder.path().join("work").join(&runs(&folder)[0]);
     assert_eq!(fs::read_to_string(run.join("stdout.txt")).unwrap(), "1 {b}\n");

@@ -19,7 +19,7 @@ pub trait Merge {
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::probability::statistics::{Forest, Merge};
+/// use pcc_evaluate::probability::statistics::{MergeTree, Merge};
 ///
 /// #[derive(Clone, PartialEq, Debug)]
 /// struct Sum(f64);
@@ -30,7 +30,7 @@ pub trait Merge {
 /// }
 ///
 /// let sum_of = |items: std::ops::Range<u64>| {
-///     let mut forest = Forest::new(items.start);
+///     let mut forest = MergeTree::new(items.start);
 ///     items.for_each(|i| forest.push(Sum(1.0 / (i + 1) as f64)));
 ///     forest
 /// };
@@ -41,7 +41,7 @@ pub trait Merge {
 /// assert!(!parts.append(sum_of(1200..1300)), "there is a gap");
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Forest<T> {
+pub struct MergeTree<T> {
     first: u64,
     /// In the order of their items, without gaps.
     trees: Vec<Tree<T>>,
@@ -66,7 +66,7 @@ impl<T> Tree<T> {
     }
 }
 
-impl<T: Merge> Forest<T> {
+impl<T: Merge> MergeTree<T> {
     /// No items yet; `first` will be the first.
     pub fn new(first: u64) -> Self {
         Self { first, trees: Vec::new() }
@@ -154,8 +154,8 @@ mod tests {
         }
     }
 
-    fn forest(items: std::ops::Range<u64>) -> Forest<Brackets> {
-        let mut forest = Forest::new(items.start);
+    fn forest(items: std::ops::Range<u64>) -> MergeTree<Brackets> {
+        let mut forest = MergeTree::new(items.start);
         items.for_each(|i| forest.push(Brackets(i.to_string())));
         forest
     }
@@ -167,7 +167,7 @@ mod tests {
             cuts.push(count);
             cuts.sort_unstable();
             let mut start = 0;
-            let mut parts = Forest::new(0);
+            let mut parts = MergeTree::new(0);
             for cut in cuts {
                 let part = forest(start..cut);
                 prop_assert!(part.is_consistent() && part.end() == cut);
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn broken_trees_are_found() {
-        let broken: [fn(&mut Forest<Brackets>); 5] = [
+        let broken: [fn(&mut MergeTree<Brackets>); 5] = [
             |forest| forest.first = 1,
             |forest| forest.trees[1].index += 1,
             |forest| forest.trees[1].level = 70,

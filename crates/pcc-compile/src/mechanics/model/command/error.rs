@@ -9,9 +9,9 @@ use thiserror::Error;
 
 /// Why a point has no eigenvalues.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub struct ProgramError {
+pub struct CommandError {
     /// What went wrong in the last attempt.
-    pub failure: ProgramFailure,
+    pub failure: CommandFailure,
     /// Attempts that were made.
     pub attempts: u32,
     /// The end of what the program wrote to its standard error, or to its standard output if that is empty. Control
@@ -21,7 +21,7 @@ pub struct ProgramError {
     pub folder: Option<PathBuf>,
 }
 
-impl fmt::Display for ProgramError {
+impl fmt::Display for CommandError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}", self.failure)?;
         if self.attempts > 1 {
@@ -34,16 +34,16 @@ impl fmt::Display for ProgramError {
     }
 }
 
-impl From<ProgramFailure> for ProgramError {
+impl From<CommandFailure> for CommandError {
     /// The first attempt failed, and left nothing.
-    fn from(failure: ProgramFailure) -> Self {
+    fn from(failure: CommandFailure) -> Self {
         Self { failure, attempts: 1, output: String::new(), folder: None }
     }
 }
 
 /// What went wrong in an attempt.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum ProgramFailure {
+pub enum CommandFailure {
     /// The command is empty.
     #[error("there is no command; give the program and its arguments, such as \"python3\", \"{{study}}/model.py\"")]
     NoCommand,
@@ -77,7 +77,7 @@ pub enum ProgramFailure {
         /// What the operating system said.
         cause: String,
     },
-    /// [`Program::interrupt`](super::Program::interrupt) was called.
+    /// [`CommandModel::interrupt`](super::CommandModel::interrupt) was called.
     #[error("the run was interrupted")]
     Interrupted,
     /// There is no such program.
@@ -206,7 +206,7 @@ pub enum ProgramFailure {
     },
 }
 
-impl ProgramFailure {
+impl CommandFailure {
     /// Whether the program was not run at all, or its end not seen: something is wrong with the settings or the machine.
     pub fn is_of_machine(&self) -> bool {
         let may_pass = matches!(self, Self::Folder { .. } | Self::NotStarted { .. } | Self::Lost { .. });

@@ -7,7 +7,7 @@ mod hostile;
 mod messages;
 mod results_table;
 
-use crate::mechanics::model::program::{Keep, Mode, Program, ProgramSettings};
+use crate::mechanics::model::command::{CommandModel, CommandSettings, Keep, Mode};
 use nalgebra::Complex;
 use std::fs;
 use std::path::Path;
@@ -24,8 +24,8 @@ fn folder() -> TempDir {
     folder
 }
 
-fn settings(folder: &Path, script: &str) -> ProgramSettings {
-    ProgramSettings {
+fn settings(folder: &Path, script: &str) -> CommandSettings {
+    CommandSettings {
         command: vec!["sh".to_owned(), "-c".to_owned(), script.to_owned()],
         shell: false,
         mode: Mode::Each,
@@ -41,8 +41,8 @@ fn settings(folder: &Path, script: &str) -> ProgramSettings {
     }
 }
 
-fn program(folder: &TempDir, script: &str) -> Program {
-    Program::new(settings(folder.path(), script))
+fn program(folder: &TempDir, script: &str) -> CommandModel {
+    CommandModel::new(settings(folder.path(), script))
 }
 
 /// What [`ECHO`] must answer.

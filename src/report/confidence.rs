@@ -8,7 +8,7 @@ use std::fmt;
 
 /// Answers to "how sure?", each about something else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Sureness {
+pub struct Confidence {
     /// Wilson interval of the share: what the finite number of samples leaves open.
     pub interval: Interval,
     /// Number of these samples.
@@ -46,7 +46,7 @@ pub struct VerifiedBound {
     pub certificates: usize,
 }
 
-impl Sureness {
+impl Confidence {
     /// `stable` counts the stable samples, `if_shifted` those that would be if max Re λ were larger by the lower, and by
     /// the upper, end of the band.
     pub fn new(surrogate: &Surrogate, stable: Proportion, if_shifted: [u64; 2], interval: Interval) -> Self {
@@ -66,7 +66,7 @@ impl Sureness {
     }
 }
 
-impl Sureness {
+impl Confidence {
     /// Takes back what is known of the whole domain only.
     pub(super) fn confine(&mut self) {
         self.is_confined = true;
@@ -103,7 +103,7 @@ fn percent(share: f64) -> String {
     format!("{:.3} %", 100.0 * share)
 }
 
-impl Sureness {
+impl Confidence {
     /// The three lines: what each is about, and what it says.
     pub(super) fn facts(&self) -> [(&'static str, String); 3] {
         let range = |interval: &Interval| format!("{} to {}", percent(interval.lower), percent(interval.upper));
@@ -143,7 +143,7 @@ impl Sureness {
     }
 }
 
-impl fmt::Display for Sureness {
+impl fmt::Display for Confidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.facts().iter().try_for_each(|(name, fact)| writeln!(f, "  {name:<22} {fact}"))
     }

@@ -3,8 +3,8 @@
 //! Arguments go to the program as they are: no shell sees them. In shell mode the folders are variables of the
 //! environment and never a part of the text that the shell reads.
 
-use super::error::ProgramFailure;
-use super::settings::ProgramSettings;
+use super::error::CommandFailure;
+use super::settings::CommandSettings;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
@@ -15,16 +15,16 @@ const STUDY_VARIABLE: &str = "PCC_STUDY_DIR";
 const WORK_VARIABLE: &str = "PCC_WORK_DIR";
 
 /// The command of a run in `folder`, with its environment.
-pub(super) fn command(settings: &ProgramSettings, folder: &Path) -> Result<Command, ProgramFailure> {
+pub(super) fn command(settings: &CommandSettings, folder: &Path) -> Result<Command, CommandFailure> {
     let study = settings.study_folder.as_os_str();
     let mut command = if settings.shell {
         let [text] = settings.command.as_slice() else {
-            return Err(ProgramFailure::ShellCommand { found: settings.command.len() });
+            return Err(CommandFailure::ShellCommand { found: settings.command.len() });
         };
         shell(text)
     } else {
         let mut words = settings.command.iter().map(|word| replace(word, study, folder.as_os_str()));
-        let mut command = Command::new(words.next().ok_or(ProgramFailure::NoCommand)?);
+        let mut command = Command::new(words.next().ok_or(CommandFailure::NoCommand)?);
         command.args(words);
         command
     };

@@ -9,7 +9,7 @@
 //!
 //! Numbers are written so that they read back with the same bits. The environment holds `PCC_STUDY_DIR` and
 //! `PCC_WORK_DIR`, the folders of the study and of the run. Success is status 0 and a complete answer; anything else
-//! is a [`ProgramError`], never a guess.
+//! is a [`CommandError`], never a guess.
 
 mod as_model;
 mod batch;
@@ -28,8 +28,8 @@ mod table_error;
 #[cfg(all(test, unix))]
 mod tests;
 
-pub use error::{ProgramError, ProgramFailure};
-pub use settings::{Keep, Mode, ProgramSettings};
+pub use error::{CommandError, CommandFailure};
+pub use settings::{CommandSettings, Keep, Mode};
 
 use nalgebra::Complex;
 use std::cell::LazyCell;
@@ -38,23 +38,23 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Eigenvalues at one point.
-type Answer = Result<Vec<Complex<f64>>, ProgramError>;
+type PointAnswer = Result<Vec<Complex<f64>>, CommandError>;
 
 /// A user's program. Runs may be asked for from several threads at once.
 #[derive(Debug)]
-pub struct Program {
-    settings: ProgramSettings,
+pub struct CommandModel {
+    settings: CommandSettings,
     is_interrupted: AtomicBool,
 }
 
-impl Program {
+impl CommandModel {
     /// A program that has not run yet; settings that make no sense are reported by the first run.
-    pub fn new(settings: ProgramSettings) -> Self {
+    pub fn new(settings: CommandSettings) -> Self {
         Self { settings, is_interrupted: AtomicBool::new(false) }
     }
 
     /// How the program is run.
-    pub fn settings(&self) -> &ProgramSettings {
+    pub fn settings(&self) -> &CommandSettings {
         &self.settings
     }
 
@@ -62,9 +62,9 @@ impl Program {
     ///
     /// # Errors
     ///
-    /// [`ProgramError`] of the last attempt.
-    pub fn run(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ProgramError> {
-        let unanswered = || Err(ProgramFailure::NoRow { run: 1 }.into());
+    /// [`CommandError`] of the last attempt.
+    pub fn run(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, CommandError> {
+        let unanswered = || Err(CommandFailure::NoRow { run: 1 }.into());
         self.answers(&[point]).pop().unwrap_or_else(unanswered)
     }
 
@@ -73,8 +73,8 @@ impl Program {
     ///
     /// # Errors
     ///
-    /// For each point as [`Program::run`].
-    pub fn run_batch(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Complex<f64>>, ProgramError>> {
+    /// For each point as [`CommandModel::run`].
+    pub fn run_batch(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Complex<f64>>, CommandError>> {
         match self.settings.mode {
             Mode::Each => points.iter().map(|point| self.run(point)).collect(),
             Mode::Batch if points.is_empty() => Vec::new(),
@@ -82,7 +82,7 @@ impl Program {
         }
     }
 
-    /// Ends what is running, within a fraction of a second: its runs fail with [`ProgramFailure::Interrupted`], and
+    /// Ends what is running, within a fraction of a second: its runs fail with [`CommandFailure::Interrupted`], and
     /// so do all later ones.
     pub fn interrupt(&self) {
         self.is_interrupted.store(true, Ordering::Relaxed);
@@ -95,18 +95,18 @@ impl Program {
     }
 
     /// Runs `points` together, and those that fail again as often as allowed.
-    fn answers(&self, points: &[&[f64]]) -> Vec<Answer> {
+    fn answers(&self, points: &[&[f64]]) -> Vec<PointAnswer> {
         let mut folders = Vec::new();
         let mut answers = self.attempt(points, &mut folders);
         for attempts in 2..=self.settings.retries.saturating_add(1) {
-            let is_open = |answer: &Answer| answer.as_ref().is_err_and(|error| !error.failure.is_final());
+            let is_open = |answer: &PointAnswer| answer.as_ref().is_err_and(|error| !error.failure.is_final());
             let open: Vec<usize> = (0..points.len()).filter(|&i| is_open(&answers[i])).collect();
             if open.is_empty() {
                 break;
             }
             let again = self.attempt(&open.iter().map(|&i| points[i]).collect::<Vec<_>>(), &mut folders);
             for (i, answer) in open.into_iter().zip(again) {
-                answers[i] = answer.map_err(|error| ProgramError { attempts, ..error });
+                answers[i] = answer.map_err(|error| CommandError { attempts, ..error });
             }
         }
         self.remove_folders(&folders, &mut answers);
@@ -114,19 +114,19 @@ impl Program {
     }
 
     /// One process for all of `points`.
-    fn attempt(&self, points: &[&[f64]], folders: &mut Vec<PathBuf>) -> Vec<Answer> {
-        let every = |error: &ProgramError| vec![Err(error.clone()); points.len()];
+    fn attempt(&self, points: &[&[f64]], folders: &mut Vec<PathBuf>) -> Vec<PointAnswer> {
+        let every = |error: &CommandError| vec![Err(error.clone()); points.len()];
         let folder = match self.check(points).and_then(|()| self.create_folder(points)) {
             Ok(folder) => folder,
             Err(failure) => return every(&failure.into()),
         };
         folders.push(folder.clone());
         let output = LazyCell::new(|| captured::end(&folder));
-        let in_folder = |failure| ProgramError {
+        let in_folder = |failure| CommandError {
             // A program that reports an error has said what there is to say.
-            output: if matches!(failure, ProgramFailure::Reported { .. }) { String::new() } else { output.clone() },
+            output: if matches!(failure, CommandFailure::Reported { .. }) { String::new() } else { output.clone() },
             folder: Some(folder.clone()),
-            ..ProgramError::from(failure)
+            ..CommandError::from(failure)
         };
         match self.start(points, &folder) {
             Ok(answers) => answers.into_iter().map(|answer| answer.map_err(in_folder)).collect(),
@@ -135,14 +135,14 @@ impl Program {
     }
 
     /// Whether there is a reason not to start at all.
-    fn check(&self, points: &[&[f64]]) -> Result<(), ProgramFailure> {
+    fn check(&self, points: &[&[f64]]) -> Result<(), CommandFailure> {
         if self.is_interrupted.load(Ordering::Relaxed) {
-            return Err(ProgramFailure::Interrupted);
+            return Err(CommandFailure::Interrupted);
         }
-        let ProgramSettings { inputs, constants, .. } = &self.settings;
+        let CommandSettings { inputs, constants, .. } = &self.settings;
         for point in points {
             if point.len() != inputs.len() {
-                return Err(ProgramFailure::PointLength { found: point.len(), expected: inputs.len() });
+                return Err(CommandFailure::PointLength { found: point.len(), expected: inputs.len() });
             }
             check_finite(inputs.iter().zip(point.iter().copied()))?;
         }
@@ -153,7 +153,7 @@ impl Program {
         Ok(())
     }
 
-    fn create_folder(&self, points: &[&[f64]]) -> Result<PathBuf, ProgramFailure> {
+    fn create_folder(&self, points: &[&[f64]]) -> Result<PathBuf, CommandFailure> {
         let kind = match self.settings.mode {
             Mode::Each => "run",
             Mode::Batch => "batch",
@@ -162,7 +162,7 @@ impl Program {
     }
 
     /// The answer to each point, or the failure of the process that should have given them.
-    fn start(&self, points: &[&[f64]], folder: &Path) -> Result<Vec<batch::Answer>, ProgramFailure> {
+    fn start(&self, points: &[&[f64]], folder: &Path) -> Result<Vec<batch::RowAnswer>, CommandFailure> {
         let (settings, is_interrupted) = (&self.settings, &self.is_interrupted);
         match settings.mode {
             // There is one point only.
@@ -174,7 +174,7 @@ impl Program {
     }
 
     /// Removes what is not kept, and forgets its name.
-    fn remove_folders(&self, folders: &[PathBuf], answers: &mut [Answer]) {
+    fn remove_folders(&self, folders: &[PathBuf], answers: &mut [PointAnswer]) {
         let are_kept = match self.settings.keep {
             Keep::Always => true,
             Keep::Failed => answers.iter().any(Result::is_err),
@@ -187,9 +187,9 @@ impl Program {
     }
 }
 
-fn check_finite<'a>(mut values: impl Iterator<Item = (&'a String, f64)>) -> Result<(), ProgramFailure> {
+fn check_finite<'a>(mut values: impl Iterator<Item = (&'a String, f64)>) -> Result<(), CommandFailure> {
     match values.find(|(_, value)| !value.is_finite()) {
-        Some((name, value)) => Err(ProgramFailure::ValueNotFinite {
+        Some((name, value)) => Err(CommandFailure::ValueNotFinite {
             name: printable::line(name, printable::SHOWN_CELL),
             value: value.to_string(),
         }),

@@ -1,10 +1,10 @@
 //! A program as a model.
 
-use super::{Mode, Program};
+use super::{CommandModel, Mode};
 use crate::mechanics::model::{Concurrency, Model, ModelError};
 use nalgebra::Complex;
 
-impl Model for Program {
+impl Model for CommandModel {
     fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
         Ok(self.run(point)?)
     }
@@ -21,11 +21,11 @@ impl Model for Program {
     }
 
     fn interrupt(&self) {
-        Program::interrupt(self);
+        CommandModel::interrupt(self);
     }
 }
 
-impl Drop for Program {
+impl Drop for CommandModel {
     fn drop(&mut self) {
         self.clean_up();
     }

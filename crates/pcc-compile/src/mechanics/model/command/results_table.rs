@@ -46,13 +46,13 @@ pub struct ResultRow {
 /// # Examples
 ///
 /// ```
-/// use pcc_compile::mechanics::model::program::results_table::read_results;
+/// use pcc_compile::mechanics::model::command::results_table::read_results;
 ///
 /// let table = "im_1, re_1, run, error\n2.5, -1, 2,\n,, 1, no convergence\n";
 /// let rows = read_results(table.as_bytes(), &[], 1)?;
 /// assert_eq!((rows[0].run, rows[0].answer.as_ref().unwrap()[0].im), (Some(2), 2.5));
 /// assert_eq!(rows[1].answer, Err("no convergence".to_owned()));
-/// # Ok::<(), pcc_compile::mechanics::model::program::results_table::TableError>(())
+/// # Ok::<(), pcc_compile::mechanics::model::command::results_table::TableError>(())
 /// ```
 pub fn read_results(reader: impl Read, inputs: &[String], eigenvalues: usize) -> Result<Vec<ResultRow>, TableError> {
     check_names(inputs)?;

@@ -1,15 +1,15 @@
 //! How programs start and end, and what they say.
 
 use super::*;
-use crate::mechanics::model::program::{ProgramError, ProgramFailure};
+use crate::mechanics::model::command::{CommandError, CommandFailure};
 use std::thread;
 use std::time::{Duration, Instant};
 
 const POINT: [f64; 2] = [1.0, 2.0];
 
-fn with_limit(folder: &TempDir, milliseconds: u64, script: &str) -> ProgramError {
+fn with_limit(folder: &TempDir, milliseconds: u64, script: &str) -> CommandError {
     let timeout = Some(Duration::from_millis(milliseconds));
-    Program::new(ProgramSettings { timeout, ..settings(folder.path(), script) }).run(&POINT).unwrap_err()
+    CommandModel::new(CommandSettings { timeout, ..settings(folder.path(), script) }).run(&POINT).unwrap_err()
 }
 
 #[test]
@@ -17,7 +17,7 @@ fn a_program_that_hangs_is_ended() {
     let folder = folder();
     let start = Instant::now();
     let error = with_limit(&folder, 500, "echo waiting; sleep 60");
-    assert_eq!(error.failure, ProgramFailure::TimedOut { limit: Duration::from_millis(500) });
+    assert_eq!(error.failure, CommandFailure::TimedOut { limit: Duration::from_millis(500) });
     assert_eq!(error.output, "waiting");
     assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
 }
@@ -47,14 +47,14 @@ fn a_grandchild_with_open_streams_is_not_waited_for() {
 fn a_signal_is_named() {
     let folder = folder();
     let error = program(&folder, "kill -9 $$").run(&POINT).unwrap_err();
-    assert_eq!(error.failure, ProgramFailure::Signal { signal: 9 });
+    assert_eq!(error.failure, CommandFailure::Signal { signal: 9 });
 }
 
 #[test]
 fn interruption_ends_a_run_and_all_later_ones() {
     let folder = folder();
     let script = "echo >> '{study}/tries'; sleep 60";
-    let program = Program::new(ProgramSettings { retries: 5, ..settings(folder.path(), script) });
+    let program = CommandModel::new(CommandSettings { retries: 5, ..settings(folder.path(), script) });
     thread::scope(|scope| {
         let run = scope.spawn(|| (program.run(&POINT), Instant::now()));
         while !folder.path().join("study/tries").exists() {
@@ -64,11 +64,11 @@ fn interruption_ends_a_run_and_all_later_ones() {
         let interruption = Instant::now();
         program.interrupt();
         let (result, end) = run.join().unwrap();
-        assert_eq!(result.unwrap_err().failure, ProgramFailure::Interrupted);
+        assert_eq!(result.unwrap_err().failure, CommandFailure::Interrupted);
         assert!(end - interruption < Duration::from_millis(500), "{:?}", end - interruption);
     });
     let answers = program.run_batch(&[POINT.to_vec(), POINT.to_vec()]);
-    assert!(answers.iter().all(|answer| answer.as_ref().unwrap_err().failure == ProgramFailure::Interrupted));
+    assert!(answers.iter().all(|answer| answer.as_ref().unwrap_err().failure == CommandFailure::Interrupted));
     assert_eq!(fs::read_to_string(folder.path().join("study/tries")).unwrap(), "\n");
 }
 
@@ -78,7 +78,7 @@ fn the_end_of_megabytes_is_shown_and_made_harmless() {
     let script = r"yes 'a line of text' | head -c 5000000; yes é | head -c 3000000 >&2
         printf 'last \033[31mred\007 \377\r\n' >&2; exit 3";
     let error = program(&folder, script).run(&POINT).unwrap_err();
-    assert_eq!(error.failure, ProgramFailure::ExitStatus { code: 3 });
+    assert_eq!(error.failure, CommandFailure::ExitStatus { code: 3 });
     assert_eq!(error.output, "é\n".repeat(19) + "last \\u{1b}[31mred\\u{7} \u{fffd}");
     let long = program(&folder, "head -c 1000000 /dev/zero | tr '\\0' x; exit 3").run(&POINT).unwrap_err();
     assert_eq!(long.output, "…".to_owned() + &"x".repeat(2000));
@@ -90,21 +90,21 @@ fn programs_that_cannot_start_say_why() {
     let folder = folder();
     let failure = |command: &[&str], shell| {
         let command = command.iter().map(|&word| word.to_owned()).collect();
-        let settings = ProgramSettings { command, shell, retries: 3, ..settings(folder.path(), "") };
-        let error = Program::new(settings).run(&POINT).unwrap_err();
-        let expected = if matches!(error.failure, ProgramFailure::NotStarted { .. }) { 4 } else { 1 };
+        let settings = CommandSettings { command, shell, retries: 3, ..settings(folder.path(), "") };
+        let error = CommandModel::new(settings).run(&POINT).unwrap_err();
+        let expected = if matches!(error.failure, CommandFailure::NotStarted { .. }) { 4 } else { 1 };
         assert_eq!(error.attempts, expected);
         error.failure
     };
     let missing = failure(&["{study}/missing"], false);
-    assert_eq!(missing, ProgramFailure::NotFound { program: format!("{}/study/missing", folder.path().display()) });
-    assert!(matches!(failure(&["pcc-no-such-program"], false), ProgramFailure::NotFound { .. }));
-    assert_eq!(failure(&[], false), ProgramFailure::NoCommand);
-    assert_eq!(failure(&["echo", "a"], true), ProgramFailure::ShellCommand { found: 2 });
+    assert_eq!(missing, CommandFailure::NotFound { program: format!("{}/study/missing", folder.path().display()) });
+    assert!(matches!(failure(&["pcc-no-such-program"], false), CommandFailure::NotFound { .. }));
+    assert_eq!(failure(&[], false), CommandFailure::NoCommand);
+    assert_eq!(failure(&["echo", "a"], true), CommandFailure::ShellCommand { found: 2 });
     fs::write(folder.path().join("study/model"), "#!/no/such/interpreter\n").unwrap();
-    let refused = |found| matches!(found, ProgramFailure::NotStarted { cause, .. } if cause.contains("denied"));
+    let refused = |found| matches!(found, CommandFailure::NotStarted { cause, .. } if cause.contains("denied"));
     assert!(refused(failure(&["{study}/model"], false)));
-    assert!(matches!(failure(&["echo", "a\0b"], false), ProgramFailure::NotStarted { .. }));
+    assert!(matches!(failure(&["echo", "a\0b"], false), CommandFailure::NotStarted { .. }));
 }
 
 #[test]
@@ -115,9 +115,9 @@ fn a_missing_interpreter_is_not_a_missing_program() {
     fs::write(&path, "#!/no/such/interpreter\n").unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
     let command = vec!["{study}/model".to_owned()];
-    let error = Program::new(ProgramSettings { command, ..settings(folder.path(), "") }).run(&POINT).unwrap_err();
+    let error = CommandModel::new(CommandSettings { command, ..settings(folder.path(), "") }).run(&POINT).unwrap_err();
     // While other tests start processes, the file may count as open for writing, which is said as well.
-    assert!(matches!(error.failure, ProgramFailure::NotStarted { .. }), "{error}");
+    assert!(matches!(error.failure, CommandFailure::NotStarted { .. }), "{error}");
 }
 
 #[test]
