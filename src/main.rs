@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    pcc::cli::main()
+    pcc::cli::run(std::env::args_os())
 }

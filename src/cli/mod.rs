@@ -1,23 +1,26 @@
 //! The command line: arguments in, reports out, exit codes as promised.
 
+mod answers;
 mod arguments;
 mod commands;
-mod eval_arguments;
+mod context;
+mod inputs;
+mod overwrite;
 mod points;
-mod progress;
-mod question;
-mod recording;
-mod run_arguments;
+mod question_options;
+mod shared_options;
+mod terminal;
 
-use arguments::{Arguments, Command};
+use crate::error::{FAILED, INTERRUPTED};
+use arguments::Arguments;
 use clap::Parser;
 use clap::error::ErrorKind;
-use pcc_evaluate::foundation::Interrupted;
-use progress::{Interrupt, Terminal};
-use serde::Serialize;
-use std::fmt::Display;
+use context::Context;
+use pcc_evaluate::foundation::is_interruption;
+use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use terminal::{Interrupt, Terminal};
 
 /// How a command ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,47 +33,39 @@ enum Ending {
     Interrupted,
 }
 
-/// What every command is given.
-struct Context {
-    json: bool,
-    quiet: bool,
-    terminal: Terminal,
-}
-
-impl Context {
-    /// A remark on standard error, beside a report.
-    fn say(&self, remark: &str) {
-        if !self.quiet {
-            complain(remark);
-        }
-    }
-
-    /// Prints a report: text for people, or one JSON document.
-    fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
-        print(&if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() })
-    }
-}
-
-/// Runs pcc with the arguments of the process: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130
-/// interrupted.
-pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+/// Runs pcc with these arguments, the first of them the program's name: 0 done, 1 a requested check did not hold, 2 bad usage or
+/// input, 130 interrupted.
+pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             let _ = error.print();
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-            return ExitCode::from(if asked { 0 } else { 2 });
+            return ExitCode::from(if asked { 0 } else { FAILED });
         }
     };
-    match run(arguments) {
+    match run_command(&arguments) {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::CheckFailed) => ExitCode::from(1),
-        Ok(Ending::Interrupted) => ExitCode::from(130),
+        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(error) if is_interruption(&*error) => {
+            complain("interrupted");
+            ExitCode::from(INTERRUPTED)
+        }
         Err(error) => {
-            complain(&format!("{error:#}"));
-            ExitCode::from(if error.downcast_ref::<Interrupted>().is_some() { 130 } else { 2 })
+            complain(&message(&error));
+            ExitCode::from(FAILED)
         }
     }
+}
+
+/// What went wrong, from the outside in. Errors of the library say their causes themselves; nothing is said twice.
+fn message(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).fold(String::new(), |said, cause| match said.contains(&cause) {
+        true => said,
+        false if said.is_empty() => cause,
+        false => format!("{said}: {cause}"),
+    })
 }
 
 /// A message on standard error; there is nobody to tell if that fails.
@@ -86,7 +81,7 @@ fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-fn run(arguments: Arguments) -> anyhow::Result<Ending> {
+fn run_command(arguments: &Arguments) -> anyhow::Result<Ending> {
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let context = Context {
@@ -94,21 +89,5 @@ fn run(arguments: Arguments) -> anyhow::Result<Ending> {
         quiet: arguments.quiet,
         terminal: Terminal::new(arguments.quiet, Interrupt::install()?),
     };
-    pool.install(|| match arguments.command {
-        Command::Run(options) => commands::run(&context, &options),
-        Command::Build(options) => commands::build(&context, &options),
-        Command::Eval(options) => commands::eval(&context, &options),
-        Command::Design(options) => commands::design(&context, &options),
-        Command::Ingest(options) => commands::ingest(&context, &options),
-        Command::Journal(options) => commands::journal(&context, &options),
-        Command::Reference(options) => commands::reference(&context, &options),
-        Command::Compare(options) => commands::compare(&context, &options),
-        Command::Certify(options) => commands::certify(&context, &options),
-        Command::Merge(options) => commands::merge(&context, &options),
-        Command::Inspect(options) => commands::inspect(&context, &options),
-        Command::Report(options) => commands::report(&context, &options),
-        Command::Reproduce(options) => commands::reproduce(&context, &options),
-        Command::Convert(options) => commands::convert(&context, &options),
-        Command::Completions { shell } => commands::completions(shell),
-    })
+    pool.install(|| arguments.command.run(&context))
 }

@@ -3,6 +3,8 @@
 use num_complex::Complex;
 use pcc_evaluate::foundation::{Observer, save_with};
 use pcc_evaluate::probability::inputs::{InputError, InputSpace};
+use serde::Serialize;
+use std::fmt;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -39,6 +41,20 @@ pub(super) enum PointsError {
 impl From<csv::Error> for PointsError {
     fn from(error: csv::Error) -> Self {
         Self::Csv(error.to_string())
+    }
+}
+
+/// What `eval` and `reference` say after writing points.
+#[derive(Debug, Serialize)]
+pub(super) struct PointsReport {
+    pub points: u64,
+    pub stable_points: u64,
+    pub file: String,
+}
+
+impl fmt::Display for PointsReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} points, {} of them stable, written to {}", self.points, self.stable_points, self.file)
     }
 }
 

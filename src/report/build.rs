@@ -1,8 +1,10 @@
 //! What a build spent and how well each component is fitted.
 
-use super::table::{Align, Table, count, significant};
+use super::table::{Align, Table, significant};
 use pcc_compile::campaign::Failure;
-use pcc_compile::study::DesignKind;
+use pcc_compile::compilation::BuiltFile;
+use pcc_compile::study::{DesignKind, Study};
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::inputs::InputSpace;
 use pcc_evaluate::surrogate::{SettingValue, StopReason, Surrogate};
 use serde::Serialize;
@@ -76,7 +78,7 @@ pub struct FailedRun {
 
 impl FailedRun {
     /// A failure at a point of these inputs.
-    pub fn new(inputs: &InputSpace, failure: &Failure) -> Self {
+    fn new(inputs: &InputSpace, failure: &Failure) -> Self {
         Self { point: inputs.describe(&failure.point), cause: failure.cause.clone() }
     }
 }
@@ -269,8 +271,17 @@ impl FitReport {
 }
 
 impl BuildReport {
-    /// The report of a surrogate written to `file`.
-    pub fn new(surrogate: &Surrogate, file: String, bytes: u64, elapsed_seconds: f64, runs: RecordedRuns) -> Self {
+    /// The report of the surrogate of `study`, which was written to `file`.
+    pub fn of_file(study: &Study, built: &BuiltFile, file: String) -> Self {
+        let runs = RecordedRuns {
+            journal: built.journal.as_ref().map(|journal| journal.display().to_string()),
+            reused: built.reused,
+            failed: built.failures.iter().map(|failure| FailedRun::new(&study.inputs, failure)).collect(),
+        };
+        Self::new(&built.surrogate, file, built.bytes, built.elapsed_seconds, runs)
+    }
+
+    fn new(surrogate: &Surrogate, file: String, bytes: u64, elapsed_seconds: f64, runs: RecordedRuns) -> Self {
         Self {
             study: surrogate.provenance.study_name.clone(),
             file,

@@ -1,6 +1,7 @@
 //! Model runs that others make, and what is recorded of runs.
 
-use super::table::{Align, Table, count};
+use super::table::{Align, Table};
+use pcc_evaluate::foundation::count;
 use serde::Serialize;
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! A verified bound, freshly made.
 
-use super::table::count;
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::{Certificate, Surrogate};
 use serde::Serialize;
 use std::fmt;

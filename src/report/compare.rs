@@ -1,7 +1,9 @@
 //! A surrogate judged against its model.
 
-use super::table::{Align, Table, count, significant};
+use super::table::{Align, Table, significant};
 use pcc_compile::reference::Comparison;
+use pcc_evaluate::foundation::count;
+use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
 
@@ -61,14 +63,8 @@ pub struct ComponentErrors {
 }
 
 impl CompareReport {
-    /// The report of a comparison.
-    pub fn new(
-        study: &str,
-        direct_computations: u64,
-        comparison: &Comparison,
-        seed: u64,
-        elapsed_seconds: f64,
-    ) -> Self {
+    /// The report of a comparison of `surrogate` with the model of the study of this name.
+    pub fn new(study: &str, surrogate: &Surrogate, comparison: &Comparison, seed: u64, elapsed_seconds: f64) -> Self {
         let components: Vec<ComponentErrors> = comparison
             .components
             .iter()
@@ -90,7 +86,7 @@ impl CompareReport {
             study: study.to_owned(),
             samples: comparison.samples,
             seed,
-            direct_computations,
+            direct_computations: surrogate.training.counts.direct_computations,
             proportion_model: comparison.proportion_model(),
             proportion_surrogate: comparison.proportion_surrogate(),
             relative_error_percent: comparison.relative_error_percent(),

@@ -1,6 +1,6 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
-use super::table::count;
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Proportion};
 use pcc_evaluate::surrogate::{Certificate, Decision, Surrogate};
 use serde::Serialize;

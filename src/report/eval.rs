@@ -4,10 +4,11 @@ use super::build::FitReport;
 use super::confidence::Confidence;
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
-use super::table::count;
 use pcc_evaluate::components::{ModeSummary, Output, Summary};
-use pcc_evaluate::evaluation::{Answer, Condition, CriticalValues, Question, Sampler, Sensitivities};
+use pcc_evaluate::evaluation::{Condition, Question, Sampler};
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Moments, Share};
+use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::{Quantile, Surrogate};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -147,28 +148,13 @@ pub struct QuantileReport {
     pub value: f64,
 }
 
-/// A surrogate, what was asked of it, and what it answers.
-#[derive(Debug, Clone, Copy)]
-pub struct Asked<'a> {
-    /// The surrogate.
-    pub surrogate: &'a Surrogate,
-    /// The question.
-    pub question: &'a Question,
-    /// The answer.
-    pub answer: &'a Answer,
-    /// Wall-clock time of the samples.
-    pub elapsed_seconds: f64,
-    /// How many parts were put together, if the samples were not evaluated here.
-    pub merged_parts: Option<usize>,
-}
-
 impl EvalReport {
     /// The report of a surrogate's samples; `None` if there are none.
-    pub fn of_surrogate(asked: Asked<'_>, indices: Option<&Sensitivities>) -> Option<Self> {
-        let Asked { surrogate, question, answer, elapsed_seconds, merged_parts } = asked;
+    pub fn of_surrogate(found: &Evaluation<'_>) -> Option<Self> {
+        let Evaluation { surrogate, question, answer, elapsed_seconds, .. } = found;
         let cell = answer.cells.first()?;
         let (name, summary) = (&surrogate.provenance.study_name, &cell.total.summary);
-        let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, question.seed, elapsed_seconds);
+        let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, question.seed, *elapsed_seconds);
         let is_whole = question.conditions.is_empty();
         if is_whole {
             for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
@@ -176,13 +162,13 @@ impl EvalReport {
             }
         }
         let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
-        report.complete = answer.is_complete;
+        report.complete = found.is_complete;
         report.has_all_samples = answer.is_complete;
         report.sampler = question.sampler.name();
         report.requested_samples = question.samples;
         report.replicates = cell.replicates.len().max(1) as u32;
         report.requested_replicates = question.replicates;
-        report.merged_parts = merged_parts;
+        report.merged_parts = found.merged_parts;
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
         report.confidence = Confidence::new(surrogate, stable, summary.stable_if_shifted, share.interval);
@@ -191,11 +177,13 @@ impl EvalReport {
             report.confidence.confine();
         }
         let free = |name: &&str| !question.conditions.iter().any(|c| c.input == *name && c.lower == c.upper);
-        report.sensitivity = indices.map(|indices| {
+        report.sensitivity = found.sensitivities.as_ref().map(|indices| {
             let mut sensitivity = SensitivityReport::new(surrogate.inputs.names(), indices);
             sensitivity.inputs.retain(|input| free(&input.input.as_str()));
             sensitivity
         });
+        let names: Vec<&str> = surrogate.inputs.names().collect();
+        report.critical = found.critical.as_ref().map(|(input, values)| CriticalReport::new(names[*input], values));
         report.events = events(question, cell);
         (report.histograms, report.quantiles) = histograms(question, &answer.histograms);
         report.warnings = FitReport::warnings_of(surrogate);
@@ -203,12 +191,6 @@ impl EvalReport {
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
         Some(report)
-    }
-
-    /// Adds the distribution of the critical value of an input.
-    pub fn add_critical_values(&mut self, surrogate: &Surrogate, input: usize, found: &CriticalValues) {
-        let name = surrogate.inputs.names().nth(input).unwrap_or_default();
-        self.critical = Some(CriticalReport::new(name, found));
     }
 
     /// The report of direct computations.

@@ -2,8 +2,9 @@
 
 use super::eval::{EvalReport, SobolReport, Statistics};
 use super::survey::{conditions_text, events_text, histogram_text, quantiles_table};
-use super::table::{Align, Table, count, significant};
+use super::table::{Align, Table, significant};
 use pcc_evaluate::evaluation::Sampler;
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::Interval;
 use std::fmt::{self, Write};
 

@@ -3,9 +3,10 @@
 use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::confidence::{error_text, is_of_modes_left_out};
-use super::table::{Align, Table, count, significant};
+use super::table::{Align, Table, significant};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::inputs::Marginal;
 use pcc_evaluate::surrogate::{Setting, SettingValue};
 use serde::Serialize;

@@ -1,6 +1,6 @@
 //! What is said of parts of an evaluation.
 
-use super::table::count;
+use pcc_evaluate::foundation::count;
 use serde::Serialize;
 use std::fmt;
 

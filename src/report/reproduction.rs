@@ -4,9 +4,10 @@ use super::charts::{density_chart, sobol_charts};
 use super::page::Page;
 use super::paper_charts::{cost_chart, figure_3, figure_4};
 use super::sensitivity::SensitivityReport;
-use super::table::{Align, Table, count, significant};
+use super::table::{Align, Table, significant};
 use crate::reproduce::{Closer, Cloud, MOST_INPUTS, PAIR, PaperRow, Range, Reproduction, Row, TABLE_2};
 use pcc_charts::{Chart, Color, sheet};
+use pcc_evaluate::foundation::count;
 
 /// Errors below this are not worth digits, in percent.
 const SMALLEST_ERROR: f64 = 1e-4;

@@ -5,9 +5,10 @@ use super::compare::CompareReport;
 use super::eval::EvalReport;
 use super::inspect::InspectReport;
 use super::page::Page;
-use super::table::{count, significant};
+use super::table::significant;
 use pcc_charts::Color;
 use pcc_evaluate::components::Block;
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::Surrogate;
 
 /// Inputs over which modes are drawn.

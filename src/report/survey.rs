@@ -1,7 +1,8 @@
 //! What else was counted: events, histograms, quantiles; and what the samples were confined to.
 
-use super::table::{Align, Table, count, plain, significant};
+use super::table::{Align, Table, plain, significant};
 use pcc_evaluate::evaluation::{Bins, Cell, Condition, Histogram, Question};
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::Interval;
 use serde::Serialize;
 use std::fmt::Write;

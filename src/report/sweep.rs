@@ -1,13 +1,15 @@
 //! The stability proportion along one input, or over two.
 
 use super::charts::short;
-use super::eval::{Asked, QuantileReport};
+use super::eval::QuantileReport;
 use super::eval_text::pace;
 use super::survey::{EventReport, LEVEL, conditions_text, events};
-use super::table::{Align, Table, count, plain, significant};
+use super::table::{Align, Table, plain, significant};
 use pcc_charts::{Axis, Cells, Chart, Color, Marks, Series, Symbol, sheet};
 use pcc_evaluate::evaluation::{Cell, Condition, Sampler, Sweep};
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::Interval;
+use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::Decision;
 use serde::Serialize;
 use std::fmt;
@@ -78,8 +80,8 @@ pub struct SweepPoint {
 
 impl SweepReport {
     /// The report of an answer to a question with sweeps.
-    pub fn new(asked: Asked<'_>) -> Self {
-        let Asked { surrogate, question, answer, elapsed_seconds, merged_parts } = asked;
+    pub fn new(found: &Evaluation<'_>) -> Self {
+        let Evaluation { surrogate, question, answer, .. } = found;
         let residuals = &surrogate.decision.max_re_residuals;
         let band = |cell: &Cell| {
             let [upper, lower] = [0, 1].map(|k| cell.share(LEVEL, |tally| tally.summary.stable_if_shifted[k]).value);
@@ -100,7 +102,7 @@ impl SweepReport {
         Self {
             study: surrogate.provenance.study_name.clone(),
             source: "surrogate",
-            complete: answer.is_complete,
+            complete: found.is_complete,
             modes: surrogate.modes(),
             samples: question.samples,
             seed: question.seed,
@@ -111,8 +113,8 @@ impl SweepReport {
             points: answer.cells.iter().enumerate().map(point).collect(),
             max_re_residuals: residuals.iter().map(|q| QuantileReport { level: q.level, value: q.value }).collect(),
             files: Vec::new(),
-            merged_parts,
-            elapsed_seconds,
+            merged_parts: found.merged_parts,
+            elapsed_seconds: found.elapsed_seconds,
         }
     }
 

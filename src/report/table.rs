@@ -119,24 +119,6 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A count with thin groups of three digits: 1 000 000.
-///
-/// # Examples
-///
-/// ```
-/// assert_eq!(pcc::report::count(1_234_567), "1 234 567");
-/// ```
-pub fn count(number: u64) -> String {
-    let digits = number.to_string();
-    let mut grouped = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            grouped.push(' ');
-        }
-        grouped.push(digit);
-    }
-    grouped
-}
 /// A number as people write it, with six digits at most and no zeros after the last: for values that were chosen.
 ///
 /// # Examples

@@ -55,21 +55,8 @@ pub enum ReproduceError {
     #[error(transparent)]
     Eval(#[from] EvalError),
     /// The user asked to stop.
-    #[error(transparent)]
+    #[error("{0}")]
     Interrupted(#[from] Interrupted),
-}
-
-impl ReproduceError {
-    /// Whether the user asked to stop.
-    pub fn is_interruption(&self) -> bool {
-        match self {
-            Self::Build(error) => error.is_interruption(),
-            Self::Reference(error) => error.is_interruption(),
-            Self::Eval(error) => error.is_interruption(),
-            Self::Interrupted(_) => true,
-            Self::Study(_) => false,
-        }
-    }
 }
 
 /// What is wanted.

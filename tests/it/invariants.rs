@@ -1,7 +1,7 @@
 //! Surrogates by invariants: as exact as promised with a tenth of the runs, whatever the seed.
 
 use crate::support::{build, invariants_study, shipped_study, text};
-use pcc_compile::reference::compare;
+use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::{Derivatives, FitMethod, Smooth, Study};
 use pcc_evaluate::components::OutputKind;
 use pcc_evaluate::foundation::Silent;
@@ -36,7 +36,7 @@ fn stays_within((inputs, most_runs, largest_error, most_misclassified): Bar, mor
         study.seed = seed;
         let surrogate = build(&study);
         let runs = surrogate.training.counts.direct_computations;
-        let comparison = compare(&surrogate, &study, POINTS, 1, &Silent).unwrap();
+        let comparison = compare_with_model(&surrogate, &study, POINTS, 1, &Silent).unwrap();
         let (error, misclassified) = (comparison.relative_error_percent().unwrap(), comparison.misclassified_percent());
         let row = format!("r = {inputs}, seed {seed}: {runs} runs, {error} %, {misclassified} % misclassified");
         assert!(runs <= most_runs && error <= largest_error && misclassified <= most_misclassified, "{row}");
@@ -90,7 +90,7 @@ fn methods_and_targets_combine_freely() {
         study.fit.proportion_tolerance = None;
         (study.design.initial, study.design.maximum) = (60, 60);
         let surrogate = build(&study);
-        compare(&surrogate, &study, 20_000, 1, &Silent).unwrap().misclassified_percent()
+        compare_with_model(&surrogate, &study, 20_000, 1, &Silent).unwrap().misclassified_percent()
     };
     let smooth = || Smooth { max_degree: 15, s2_target: 0.999 };
     let papers = shipped_study(3).fit.method;
@@ -137,7 +137,8 @@ fn the_estimated_error_of_the_proportion_is_of_the_order_of_the_true_one() {
             let surrogate = build(&study);
             let estimate = surrogate.decision.proportion_error.unwrap();
             let truth =
-                compare(&surrogate, &study, 40_000, 1, &Silent).unwrap().relative_error_percent().unwrap() / 100.0;
+                compare_with_model(&surrogate, &study, 40_000, 1, &Silent).unwrap().relative_error_percent().unwrap()
+                    / 100.0;
             ratios.push(truth / estimate);
         }
     }

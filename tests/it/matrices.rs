@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use pcc_compile::compilation::build;
 use pcc_compile::mechanics::model::Model;
 use pcc_compile::mechanics::spectrum::Spectrum;
-use pcc_compile::reference::compare;
+use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use pcc_evaluate::probability::inputs::random_points;
@@ -115,7 +115,8 @@ fn proportions_are_those_of_the_model() {
         let study = study(name);
         let surrogate = build(&study, &Silent).unwrap();
         let runs = surrogate.training.counts.direct_computations;
-        let error = compare(&surrogate, &study, 100_000, 1, &Silent).unwrap().relative_error_percent().unwrap();
+        let error =
+            compare_with_model(&surrogate, &study, 100_000, 1, &Silent).unwrap().relative_error_percent().unwrap();
         println!("{name}: {runs} runs, {error:.4} % off");
         assert!(runs <= 100 && error <= 0.1, "{name}: {runs} runs, {error} %");
     }

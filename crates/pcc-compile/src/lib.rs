@@ -11,10 +11,12 @@
 //! | [`study`] | a TOML file becomes a validated problem |
 //! | [`campaign`] | model runs: which are asked for, known, recorded |
 //! | [`compilation`] | the loop of the build, and its stopping rule |
+//! | [`ask_and_tell`] | builds whose model somebody else runs |
 //! | [`mod@reference`] | the model itself on many points; comparisons and certificates |
 
 #![forbid(unsafe_code)]
 
+pub mod ask_and_tell;
 pub mod campaign;
 pub mod compilation;
 pub mod fitting;

@@ -13,6 +13,7 @@
 //! | [`artifact`] | its file |
 //! | [`evaluation`] | a surrogate at millions of points, and what is asked about them |
 //! | [`shard_file`] | parts of an evaluation, kept in files until all are there |
+//! | [`session`] | from a request in words to one answer |
 //!
 //! ```no_run
 //! use pcc_evaluate::{artifact, evaluation::monte_carlo, foundation::Silent};
@@ -31,5 +32,6 @@ pub mod evaluation;
 pub mod foundation;
 pub mod polynomials;
 pub mod probability;
+pub mod session;
 pub mod shard_file;
 pub mod surrogate;

@@ -1,23 +1,56 @@
 //! `pcc build`
 
-use super::super::arguments::{Build, FileFormat};
-use super::super::recording::{self, journal_of_build};
-use super::super::run_arguments::Recording;
-use super::super::{Context, Ending};
-use super::{interruptible, keep_other_files, read_study};
-use crate::report::{BuildReport, FailedRun, RecordedRuns};
-use pcc_compile::campaign::Campaign;
-use pcc_compile::compilation::BuildError;
-use pcc_compile::study::Study;
-use pcc_evaluate::artifact::{Format, encode};
-use pcc_evaluate::foundation::{check_writable, save};
-use pcc_evaluate::surrogate::Surrogate;
+use crate::cli::inputs::read_study;
+use crate::cli::overwrite::{Output, refuse_to_replace};
+use crate::cli::shared_options::{RecordingOptions, seed};
+use crate::cli::{Context, Ending};
+use crate::report::BuildReport;
+use clap::{Args, ValueEnum};
+use pcc_evaluate::artifact::Format;
 use serde::Serialize;
 use std::fmt;
-use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::path::PathBuf;
 
-pub(in super::super) fn build(context: &Context, options: &Build) -> anyhow::Result<Ending> {
+/// Build a surrogate from a study
+///
+/// Runs the model on a nested Latin hypercube design that grows until every component is fitted and the stability
+/// proportion is accurate enough, as far as the study asks for it, and writes index sets and coefficients. Full expansions
+/// (methods gpc and me-gpc) run it on a grid, or on a design whose size their degree fixes. The same study gives the same
+/// bytes on any number of threads.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Study file
+    pub study: PathBuf,
+
+    /// Surrogate file [default: <name of the study>.pcc in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Form of the file [default: by the ending of FILE, .json or other]
+    #[arg(long, value_enum)]
+    pub format: Option<FileFormat>,
+
+    /// Seed of the design instead of the study's
+    #[arg(long, value_name = "S", value_parser = seed())]
+    pub seed: Option<u64>,
+
+    /// Print the study with every default filled in, and build nothing
+    #[arg(long)]
+    pub show_study: bool,
+
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum FileFormat {
+    /// Compact and checksummed
+    Binary,
+    /// Readable
+    Json,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let mut study = read_study(&options.study)?;
     study.seed = options.seed.unwrap_or(study.seed);
     if options.show_study {
@@ -33,47 +66,11 @@ pub(in super::super) fn build(context: &Context, options: &Build) -> anyhow::Res
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{}.{}", study.name, asked.unwrap_or(Format::Binary).extension())));
     let format = asked.unwrap_or_else(|| Format::of_path(&path));
-    keep_other_files(&path)?;
+    refuse_to_replace(&path, Output::Surrogate, &[])?;
     let source = options.study.display().to_string();
-    let (_, report) = build_to_file(context, &study, &source, &path, format, &options.recording)?;
-    context.print(&report)?;
+    let built = context.build_to_file(&study, &source, &path, format, &options.recording.to_recording())?;
+    context.print(&BuildReport::of_file(&study, &built, path.display().to_string()))?;
     Ok(Ending::Done)
-}
-
-/// Builds the surrogate of `study`, read from `source`, and writes it; asks for the place before the first model run.
-pub(super) fn build_to_file(
-    context: &Context,
-    study: &Study,
-    source: &str,
-    path: &Path,
-    format: Format,
-    recording: &Recording,
-) -> anyhow::Result<(Surrogate, BuildReport)> {
-    check_writable(path)?;
-    let books = recording::open(context, study, recording, Some(journal_of_build(study, path)))?;
-    let start = Instant::now();
-    let campaign = Campaign { study, ledger: Some(&books.ledger) };
-    let surrogate = match pcc_compile::compilation::build(campaign, &context.terminal) {
-        Ok(surrogate) => surrogate,
-        Err(error) => {
-            if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
-                context.say("failures were recorded earlier; --resume --retry-failed tries them again");
-            }
-            books.give_up(context, error.is_interruption());
-            return Err(interruptible(error.clone(), error.is_interruption(), source));
-        }
-    };
-    let elapsed = start.elapsed().as_secs_f64();
-    let bytes = encode(&surrogate, format)?;
-    save(path, &bytes)?;
-    let runs = RecordedRuns {
-        journal: books.kept_journal().map(|journal| journal.display().to_string()),
-        reused: books.ledger.reused(),
-        failed: books.ledger.failures().iter().map(|failure| FailedRun::new(&study.inputs, failure)).collect(),
-    };
-    books.close();
-    let report = BuildReport::new(&surrogate, path.display().to_string(), bytes.len() as u64, elapsed, runs);
-    Ok((surrogate, report))
 }
 
 /// A study with its defaults.

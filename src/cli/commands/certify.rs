@@ -1,24 +1,59 @@
 //! `pcc certify`
 
-use super::super::arguments::Certify;
-use super::super::recording::open_here;
-use super::super::{Context, Ending};
-use super::convert::refuse_lossy;
-use super::{interruptible, keep_other_files, read_study, read_surrogate};
+use crate::cli::inputs::{read_study, read_surrogate};
+use crate::cli::overwrite::{Output, claim};
+use crate::cli::shared_options::{RecordingOptions, sample_count, seed};
+use crate::cli::{Context, Ending};
 use crate::report::CertifyReport;
-use anyhow::bail;
+use anyhow::{Context as _, bail};
+use clap::Args;
 use pcc_compile::campaign::Campaign;
-use pcc_compile::reference::certify as certify_with_model;
+use pcc_compile::reference::certify_with_model;
 use pcc_evaluate::artifact::{Format, encode};
-use pcc_evaluate::foundation::{check_writable, save};
+use pcc_evaluate::foundation::save;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Confidence level of certificates.
 const LEVEL: f64 = 0.95;
 
-pub(in super::super) fn certify(context: &Context, options: &Certify) -> anyhow::Result<Ending> {
+/// Bound the true stability proportion by fresh model runs
+///
+/// Runs the model at points that neither the build nor any evaluation has used, counts where surrogate and model
+/// disagree, and bounds the model's proportion from that: it holds however wrong the surrogate is, and is narrow where
+/// it is right. The certificate is added to the surrogate file, beside any earlier one.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Study it was built from
+    #[arg(long, value_name = "STUDY")]
+    pub study: PathBuf,
+
+    /// Number of fresh model runs
+    #[arg(short = 'm', long, value_name = "M", value_parser = sample_count, allow_negative_numbers = true)]
+    pub runs: u64,
+
+    /// Seed of the fresh points; a seed the file has a certificate for is refused
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
+    /// File for the surrogate with its new certificate [default: the surrogate file itself]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+
+    /// Certify against a study that asks another question than the surrogate was built for
+    #[arg(long)]
+    pub force: bool,
+
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.surrogate)?;
-    refuse_lossy(&artifact, &options.surrogate)?;
+    artifact.check_lossless().with_context(|| options.surrogate.display().to_string())?;
     let mut surrogate = artifact.surrogate;
     let study = read_study(&options.study)?;
     let (file, source) = (options.surrogate.display(), options.study.display());
@@ -39,14 +74,13 @@ pub(in super::super) fn certify(context: &Context, options: &Certify) -> anyhow:
     }
     let output = options.output.as_ref().unwrap_or(&options.surrogate);
     let format = options.output.as_ref().map_or(artifact.format, |path| Format::of_path(path));
-    keep_other_files(output)?;
-    check_writable(output)?;
-    let books = open_here(context, &study, &options.recording)?;
+    claim(output, Output::Surrogate, &[])?;
+    let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let start = Instant::now();
     let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
-        .inspect_err(|_| books.say_recorded(context))
-        .map_err(|error| interruptible(error.clone(), error.is_interruption(), &source.to_string()))?;
+        .inspect_err(|_| context.say_recorded(&books))
+        .with_context(|| source.to_string())?;
     surrogate.certificates.push(certificate);
     save(output, &encode(&surrogate, format)?)?;
     let elapsed = start.elapsed().as_secs_f64();

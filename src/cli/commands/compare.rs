@@ -1,47 +1,64 @@
 //! `pcc compare`
 
-use super::super::arguments::Compare;
-use super::super::recording::open_here;
-use super::super::{Context, Ending, complain};
-use super::{interruptible, read_study, read_surrogate};
-use crate::report::CompareReport;
+use crate::cli::inputs::{read_study, read_surrogate};
+use crate::cli::shared_options::{RecordingOptions, percentage, sample_count, seed};
+use crate::cli::{Context, Ending, complain};
+use crate::report::{CompareReport, significant};
+use anyhow::Context as _;
+use clap::Args;
 use pcc_compile::campaign::Campaign;
-use pcc_compile::reference::compare as compare_with_model;
-use pcc_evaluate::surrogate::Surrogate;
+use pcc_compile::reference::compare_with_model;
+use std::path::PathBuf;
 use std::time::Instant;
 
-pub(in super::super) fn compare(context: &Context, options: &Compare) -> anyhow::Result<Ending> {
+/// Compare a surrogate with its model at the same points
+///
+/// Errors of the stability proportion, of means and variances, and the share of points on whose stability the two
+/// disagree. Refuses a study that asks another question than the surrogate answers.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Study it was built from
+    #[arg(long, value_name = "STUDY")]
+    pub study: PathBuf,
+
+    /// Number of points, as in 10000 or 1e4
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, allow_negative_numbers = true)]
+    pub samples: u64,
+
+    /// Seed of the points
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
+    /// Exit with code 1 if the relative error of the stability proportion is larger
+    #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
+    pub max_error: Option<f64>,
+
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let study = read_study(&options.study)?;
-    let books = open_here(context, &study, &options.recording)?;
+    let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
-    let source = options.study.display().to_string();
-    let report = judge(context, &surrogate, campaign, &source, options.samples, options.seed);
-    let report = report.inspect_err(|_| books.say_recorded(context))?;
+    let start = Instant::now();
+    let comparison = compare_with_model(&surrogate, campaign, options.samples, options.seed, &context.terminal)
+        .inspect_err(|_| context.say_recorded(&books))
+        .with_context(|| options.study.display().to_string())?;
+    let report = CompareReport::new(&study.name, &surrogate, &comparison, options.seed, start.elapsed().as_secs_f64());
     context.print(&report)?;
     match options.max_error {
         Some(limit) if report.relative_error_percent.is_none_or(|error| error > limit) => {
             let error = report
                 .relative_error_percent
-                .map_or("infinitely".to_owned(), |error| format!("by {} %", crate::report::significant(error, 4)));
+                .map_or("infinitely".to_owned(), |error| format!("by {} %", significant(error, 4)));
             complain(&format!("the proportion is off {error}, more than --max-error {limit}"));
             Ok(Ending::CheckFailed)
         }
         _ => Ok(Ending::Done),
     }
-}
-
-pub(super) fn judge(
-    context: &Context,
-    surrogate: &Surrogate,
-    campaign: Campaign<'_>,
-    source: &str,
-    samples: u64,
-    seed: u64,
-) -> anyhow::Result<CompareReport> {
-    let start = Instant::now();
-    let comparison = compare_with_model(surrogate, campaign, samples, seed, &context.terminal)
-        .map_err(|error| interruptible(error.clone(), error.is_interruption(), source))?;
-    let runs = surrogate.training.counts.direct_computations;
-    Ok(CompareReport::new(&campaign.study.name, runs, &comparison, seed, start.elapsed().as_secs_f64()))
 }

@@ -1,51 +1,34 @@
 //! `pcc convert`
 
-use super::super::arguments::Convert;
-use super::super::{Context, Ending};
-use super::{keep_inputs, keep_other_files, read_surrogate};
-use anyhow::bail;
-use pcc_evaluate::artifact::version::{Compatibility, compatibility};
-use pcc_evaluate::artifact::{Artifact, Format, encode};
-use pcc_evaluate::foundation::save;
+use crate::cli::inputs::read_surrogate;
+use crate::cli::overwrite::{Output, refuse_to_replace};
+use crate::cli::{Context, Ending};
+use anyhow::Context as _;
+use clap::Args;
+use pcc_evaluate::artifact::{Format, encode};
+use pcc_evaluate::foundation::{count, save};
 use serde::Serialize;
 use std::fmt;
-use std::path::Path;
+use std::path::PathBuf;
 
-pub(in super::super) fn convert(context: &Context, options: &Convert) -> anyhow::Result<Ending> {
+/// Convert a surrogate between binary (.pcc) and JSON (.json), without loss
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Surrogate file to read, binary or JSON
+    pub input: PathBuf,
+
+    /// Surrogate file to write: JSON if it ends in .json, else binary
+    pub output: PathBuf,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.input)?;
-    refuse_lossy(&artifact, &options.input)?;
-    keep_inputs(&options.output, &[&options.input])?;
-    keep_other_files(&options.output)?;
+    artifact.check_lossless().with_context(|| options.input.display().to_string())?;
+    refuse_to_replace(&options.output, Output::Surrogate, &[&options.input])?;
     let bytes = encode(&artifact.surrogate, Format::of_path(&options.output))?;
     save(&options.output, &bytes)?;
     context.print(&Converted { file: options.output.display().to_string(), bytes: bytes.len() as u64 })?;
     Ok(Ending::Done)
-}
-
-/// Refuses a file that this version could not write again without changing more than it should.
-pub(super) fn refuse_lossy(artifact: &Artifact, path: &Path) -> anyhow::Result<()> {
-    if let [kind, ..] = artifact.unknown_sections[..] {
-        bail!(
-            "{}: has a section of kind {kind} that this pcc does not know and would lose; use the pcc that wrote it",
-            path.display()
-        );
-    }
-    if compatibility(artifact.version.0, artifact.version.1) == Compatibility::NewerMinor {
-        bail!(
-            "{}: has format {}.{}, which this pcc would write as an older one; use the pcc that wrote it",
-            path.display(),
-            artifact.version.0,
-            artifact.version.1
-        );
-    }
-    if !artifact.is_canonical {
-        bail!(
-            "{}: is arranged in another way than pcc writes it, so writing it again would change its content_id; use the \
-             program that wrote it",
-            path.display()
-        );
-    }
-    Ok(())
 }
 
 #[derive(Debug, Serialize)]
@@ -56,6 +39,6 @@ struct Converted {
 
 impl fmt::Display for Converted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "written to {} ({} bytes)", self.file, crate::report::count(self.bytes))
+        writeln!(f, "written to {} ({} bytes)", self.file, count(self.bytes))
     }
 }

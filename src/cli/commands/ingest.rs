@@ -1,25 +1,44 @@
 //! `pcc ingest`: answers that others computed.
 
-use super::super::recording::{journal_here, plural, remark};
-use super::super::run_arguments::Ingest;
-use super::super::{Context, Ending};
-use super::design::{Stage, refuse_derivatives, step};
-use super::read_study;
+use crate::cli::inputs::read_study;
+use crate::cli::{Context, Ending};
 use crate::report::IngestReport;
 use anyhow::{Context as _, anyhow, bail};
-use pcc_compile::campaign::journal::{Journal, RunOutcome};
-use pcc_compile::campaign::{Ledger, RowProblem, match_answers};
+use clap::Args;
+use pcc_compile::ask_and_tell::{AskError, TellError, check, tell};
+use pcc_compile::campaign::journal::Journal;
+use pcc_compile::campaign::{journal_here, notes_on};
 use pcc_compile::mechanics::model::command::results_table::read_results;
 use std::fs::File;
-use std::path::Path;
+use std::path::PathBuf;
 
-/// Rows that are named when they cannot be taken.
-const SHOWN_PROBLEMS: usize = 10;
+/// Take answers to the points of a design from a table
+///
+/// RESULTS.csv has the inputs of the table that pcc design wrote, and its column run if they have lost digits, and the eigenvalues as
+/// re_1, im_1, re_2, im_2 and so on in 1/s; a text in a column error marks a run that failed. Rows may come in any order, in part, and more than
+/// once; a row that contradicts an earlier answer is refused, and then none is taken.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Study file
+    pub study: PathBuf,
 
-pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::Result<Ending> {
+    /// Table of answers
+    #[arg(value_name = "RESULTS.csv")]
+    pub results: PathBuf,
+
+    /// Take answers that contradict earlier ones in their place
+    #[arg(long)]
+    pub replace: bool,
+
+    /// Journal of the answers [default: <name of the study>.journal in the current folder]
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = read_study(&options.study)?;
     let source = options.study.display().to_string();
-    refuse_derivatives(&study, &source)?;
+    check(&study).with_context(|| source.clone())?;
     let path = options.journal.clone().unwrap_or_else(|| journal_here(&study));
     let Some(answers) = study.model.answers() else {
         bail!(
@@ -35,50 +54,27 @@ pub(in super::super) fn ingest(context: &Context, options: &Ingest) -> anyhow::R
     let rows = read_results(file, &inputs, answers.eigenvalues).with_context(|| shown.to_string())?;
 
     // Held from the first look to the last record, so that no other process records in between.
-    let (journal, mut contents) = Journal::open(&path)?;
-    remark(context, &path, &contents);
-    let known = Ledger::blank(&study).knowing(&contents);
-    let before = step(context, &study, &contents, &source)?;
-    let outcome = |point: &[f64]| known.find(point).cloned();
-    let found = match_answers(&study, &before.asked, outcome, &rows, options.replace)
-        .map_err(|problems| refusal(&options.results, &problems))?;
-    // What would end the build must not get into the journal, where it could not be taken back.
-    contents.records.extend(found.records.iter().cloned());
-    let after = match &before.stage {
-        Stage::Complete if found.records.is_empty() => before,
-        _ => step(context, &study, &contents, &source)?,
-    };
-    if let Stage::Failed(error) = after.stage {
-        return Err(error.context(format!("{shown}: with these answers the build cannot go on, so none was taken")));
-    }
-    journal.append(&found.records.iter().collect::<Vec<_>>())?;
-    let failed = found.records.iter().filter(|record| matches!(record.outcome, RunOutcome::Failed { .. })).count();
-    let answered = found.records.len() - failed;
-    let missing = after.asked.iter().filter(|asked| !asked.is_known).count() as u64;
+    let (journal, contents) = Journal::open(&path)?;
+    notes_on(&path, &contents).iter().for_each(|note| context.note(note));
+    let told = tell(&study, &journal, contents, &rows, options.replace, &context.terminal);
+    let told = told.map_err(|error| match error {
+        TellError::Ask(AskError::Build(error)) => anyhow::Error::from(error).context(source.clone()),
+        TellError::CannotGoOn(cause) => {
+            anyhow!("{shown}: with these answers the build cannot go on, so none was taken: {source}: {cause}")
+        }
+        TellError::Journal(error) => error.into(),
+        other => anyhow::Error::from(other).context(shown.to_string()),
+    })?;
     context.print(&IngestReport {
         study: study.name.clone(),
         source,
         journal: path.display().to_string(),
         rows: rows.len() as u64,
-        answered: answered as u64,
-        failed: failed as u64,
-        repeated: found.repeated as u64,
-        missing,
-        complete: matches!(after.stage, Stage::Complete),
+        answered: told.answered as u64,
+        failed: told.failed as u64,
+        repeated: told.repeated as u64,
+        missing: told.missing as u64,
+        complete: told.is_complete,
     })?;
     Ok(Ending::Done)
-}
-
-fn refusal(path: &Path, problems: &[RowProblem]) -> anyhow::Error {
-    let lines: Vec<String> = problems.iter().take(SHOWN_PROBLEMS).map(|problem| format!("  {problem}")).collect();
-    let more = match problems.len().saturating_sub(SHOWN_PROBLEMS) {
-        0 => String::new(),
-        more => format!("\n  and {}", plural(more, "other row")),
-    };
-    anyhow!(
-        "{}: {} cannot be taken, so none was:\n{}{more}",
-        path.display(),
-        plural(problems.len(), "row"),
-        lines.join("\n")
-    )
 }

@@ -1,11 +1,23 @@
 //! `pcc inspect`
 
-use super::super::arguments::Inspect;
-use super::super::{Context, Ending, complain};
-use super::read_surrogate;
+use crate::cli::inputs::read_surrogate;
+use crate::cli::{Context, Ending, complain};
 use crate::report::InspectReport;
+use clap::Args;
+use std::path::PathBuf;
 
-pub(in super::super) fn inspect(context: &Context, options: &Inspect) -> anyhow::Result<Ending> {
+/// Show what is inside a surrogate file
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Exit with code 1 if this evaluator does not find the values of the self-test
+    #[arg(long)]
+    pub check: bool,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.surrogate)?;
     let bytes = std::fs::metadata(&options.surrogate)?.len();
     let report = InspectReport::new(&artifact, options.surrogate.display().to_string(), bytes);

@@ -1,28 +1,45 @@
 //! `pcc journal`: what is recorded of model runs.
 
-use super::super::recording::remark;
-use super::super::run_arguments::ShowJournal;
-use super::super::{Context, Ending};
-use super::{keep_inputs, keep_results, read_study};
+use crate::cli::inputs::read_study;
+use crate::cli::overwrite::{Output, refuse_to_replace};
+use crate::cli::{Context, Ending};
 use crate::report::{JournalModel, JournalReport};
 use anyhow::bail;
+use clap::Args;
 use pcc_compile::campaign::journal::{Contents, Journal, Record, RunOutcome};
+use pcc_compile::campaign::notes_on;
 use pcc_evaluate::foundation::{hexadecimal, save_with};
 use std::io::{self, Write};
+use std::path::PathBuf;
 
-pub(in super::super) fn journal(context: &Context, options: &ShowJournal) -> anyhow::Result<Ending> {
+/// Show the model runs that are recorded in a journal
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Journal file
+    pub journal: PathBuf,
+
+    /// Only the runs of this study's model, columns named like its inputs
+    #[arg(long, value_name = "STUDY")]
+    pub study: Option<PathBuf>,
+
+    /// Write every run with its inputs, eigenvalues and errors to a table
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = options.study.as_ref().map(|path| read_study(path)).transpose()?;
     let mut contents = Journal::read(&options.journal)?;
     let (torn_bytes, damaged_bytes) = (contents.torn_bytes, contents.damaged_bytes);
     // Reading cuts nothing.
-    remark(context, &options.journal, &Contents { torn_bytes: 0, damaged_bytes, records: Vec::new() });
+    let damage = Contents { torn_bytes: 0, damaged_bytes, records: Vec::new() };
+    notes_on(&options.journal, &damage).iter().for_each(|note| context.note(note));
     if let Some(study) = &study {
         let model = study.model_hash();
         contents.records.retain(|record| record.model == model);
     }
     if let Some(csv) = &options.csv {
-        keep_inputs(csv, &[&options.journal])?;
-        keep_results(csv)?;
+        refuse_to_replace(csv, Output::Table, &[&options.journal])?;
         let names: Option<Vec<&str>> = study.as_ref().map(|study| study.inputs.names().collect());
         let inputs = contents.records.iter().map(|record| record.point.len()).max().unwrap_or(0);
         if names.is_none() && contents.records.iter().any(|record| record.point.len() != inputs) {

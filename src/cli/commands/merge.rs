@@ -1,17 +1,37 @@
 //! `pcc merge`
 
-use super::super::eval_arguments::Merge;
-use super::super::{Context, Ending};
-use super::eval::{check_pictures, present, stable};
-use super::{keep_inputs, keep_unmarked_files};
-use crate::report::{Asked, MergeReport};
+use crate::cli::answers::{check_pictures, present};
+use crate::cli::overwrite::{Output, claim};
+use crate::cli::shared_options::Pictures;
+use crate::cli::{Context, Ending};
+use crate::report::MergeReport;
 use anyhow::Context as _;
-use pcc_evaluate::foundation::{check_writable, save};
-use pcc_evaluate::shard_file::{MARK, Part, PartError, merge as merge_parts};
-use std::path::Path;
+use clap::Args;
+use pcc_evaluate::foundation::save;
+use pcc_evaluate::session::Evaluation;
+use pcc_evaluate::shard_file::{MARK, Part, merge as merge_parts};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub(in super::super) fn merge(context: &Context, options: &Merge) -> anyhow::Result<Ending> {
+/// Put the parts of an evaluation together
+///
+/// Takes the files that eval has written with --shard and --part, in any order, and prints what one evaluation of all samples
+/// would have printed. Parts of different evaluations, missing and repeated shards are refused.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Files that eval --part has written
+    #[arg(required = true)]
+    pub parts: Vec<PathBuf>,
+
+    /// Write the parts as one part to FILE; then the first and the last shards may be missing
+    #[arg(long, value_name = "FILE")]
+    pub part: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub pictures: Pictures,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let start = Instant::now();
     let files: Vec<&Path> = options.parts.iter().map(AsRef::as_ref).collect();
     let mut parts = Vec::with_capacity(files.len());
@@ -21,44 +41,30 @@ pub(in super::super) fn merge(context: &Context, options: &Merge) -> anyhow::Res
         parts.push((name, part));
     }
     let whole = merge_parts(parts)?;
-    let survey = whole.survey()?;
-    let (found, all) = (whole.findings.chunks(), survey.division().chunks());
-    let is_complete = found == (0..all);
     if let Some(file) = &options.part {
-        keep_inputs(file, &files)?;
-        keep_unmarked_files(file, MARK)?;
-        check_writable(file)?;
+        claim(file, Output::Marked(MARK), &files)?;
     }
     check_pictures(&options.pictures, &whole.question, &files, "these parts are of plain samples")?;
-    if !is_complete && (options.part.is_none() || options.pictures.table.is_some() || options.pictures.chart.is_some())
-    {
-        let (place, missing) = match found.start {
-            0 => ("after those of all parts", found.end..all),
-            start => ("before those of all parts", 0..start),
-        };
-        return Err(PartError::Gap { place: place.to_owned(), missing, chunks: all }.into());
+    let wants_all = options.part.is_none() || options.pictures.table.is_some() || options.pictures.chart.is_some();
+    if wants_all {
+        whole.check_complete()?;
     }
     if let Some(file) = &options.part {
         save(file, &whole.to_bytes()?)?;
-        if !is_complete {
+        if !whole.is_complete() {
+            let survey = whole.survey()?;
             context.print(&MergeReport {
                 file: file.display().to_string(),
                 parts: files.len(),
-                samples: survey.division().samples_in(&found),
+                samples: survey.division().samples_in(&whole.findings.chunks()),
                 of: survey.division().samples(),
-                stable_samples: stable(&whole.findings),
+                stable_samples: whole.findings.stable(),
             })?;
             return Ok(Ending::Done);
         }
         context.say(&format!("written to {}", file.display()));
     }
-    let answer = whole.findings.answer(survey.division());
-    let asked = Asked {
-        surrogate: &whole.surrogate,
-        question: &whole.question,
-        answer: &answer,
-        elapsed_seconds: start.elapsed().as_secs_f64(),
-        merged_parts: Some(files.len()),
-    };
-    present(context, asked, &survey, None, &options.pictures)
+    let mut found = Evaluation::of_parts(&whole, files.len(), &context.terminal)?;
+    found.elapsed_seconds = start.elapsed().as_secs_f64();
+    present(context, &found, &options.pictures)
 }

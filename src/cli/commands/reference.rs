@@ -1,35 +1,51 @@
 //! `pcc reference`
 
-use super::super::arguments::Reference;
-use super::super::points::{Evaluated, PointsFile};
-use super::super::recording::open_here;
-use super::super::{Context, Ending};
-use super::{PointsReport, interruptible, keep_inputs, read_study};
+use crate::cli::inputs::read_study;
+use crate::cli::overwrite::keep_inputs;
+use crate::cli::points::{Evaluated, PointsFile, PointsReport};
+use crate::cli::shared_options::{RecordingOptions, SamplingOptions};
+use crate::cli::{Context, Ending};
 use crate::report::EvalReport;
-use pcc_compile::campaign::{Campaign, RunError, Runner};
+use anyhow::Context as _;
+use clap::Args;
+use pcc_compile::campaign::{Campaign, Runner};
 use pcc_compile::reference::monte_carlo;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub(in super::super) fn reference(context: &Context, options: &Reference) -> anyhow::Result<Ending> {
+/// Sample the model itself: the reference for surrogates
+///
+/// Direct computations at the points that eval takes with the same seed, or at the points of a CSV file.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]))]
+pub(in crate::cli) struct Options {
+    /// Study file
+    pub study: PathBuf,
+
+    #[command(flatten)]
+    pub sampling: SamplingOptions,
+
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = read_study(&options.study)?;
     let sampling = &options.sampling;
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
         keep_inputs(out, &[points, &options.study])?;
-        let books = open_here(context, &study, &options.recording)?;
+        let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
         let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
         let source = options.study.display().to_string();
         context.print(&at_points(context, campaign, source, points, out, sampling.extrapolate)?)?;
         return Ok(Ending::Done);
     }
-    let books = open_here(context, &study, &options.recording)?;
+    let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let start = Instant::now();
-    let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal);
-    let found = found.map_err(|error| {
-        books.say_recorded(context);
-        interruptible(error.clone(), error.is_interruption(), &options.study.display().to_string())
-    })?;
+    let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
+        .inspect_err(|_| context.say_recorded(&books))
+        .with_context(|| options.study.display().to_string())?;
     let elapsed = start.elapsed().as_secs_f64();
     context.print(&EvalReport::of_model(&study.name, &found.outputs, &found.summary, sampling.seed, elapsed))?;
     Ok(Ending::Done)
@@ -46,9 +62,7 @@ fn at_points(
     let mut runner = Runner::new(campaign)?;
     let file = PointsFile::open(points, &campaign.study.inputs, extrapolate)?;
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
-        let runs = runner
-            .run(group, &context.terminal)
-            .map_err(|error| interruptible(error.clone(), matches!(error, RunError::Interrupted(_)), &source))?;
+        let runs = runner.run(group, &context.terminal).with_context(|| source.clone())?;
         let results = runs.into_iter().map(|run| (run.eigenvalues, run.spectrum.max_re())).collect();
         Ok(Evaluated { modes: runner.modes().to_vec(), results })
     })?;

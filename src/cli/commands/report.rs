@@ -1,23 +1,23 @@
 //! `pcc report`
 
-use super::super::arguments::Report;
-use super::super::recording::open_here;
-use super::super::{Context, Ending};
-use super::eval::sample;
-use super::{SURROGATE_PAGE, interruptible, keep_inputs, keep_unmarked_files, read_study, read_surrogate};
+use crate::cli::inputs::{read_study, read_surrogate};
+use crate::cli::overwrite::{Output, SURROGATE_PAGE, claim};
+use crate::cli::shared_options::{RecordingOptions, run_count, sample_count, seed};
+use crate::cli::{Context, Ending};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
 use anyhow::Context as _;
+use clap::Args;
 use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::{ModelSample, check_problem};
 use pcc_evaluate::components::Block;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
-use pcc_evaluate::foundation::{check_writable, save};
+use pcc_evaluate::foundation::{count, save};
 use pcc_evaluate::probability::inputs::random_points;
 use pcc_evaluate::probability::random::Purpose;
 use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Points of the surrogate that are kept for pictures.
@@ -27,39 +27,68 @@ const POINTS: u64 = 20_000;
 const RUNS: u64 = 10_000;
 const PROGRAM_RUNS: u64 = 100;
 
-pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::Result<Ending> {
+/// Put a surrogate on one page: an HTML file with its answer, pictures and tables
+///
+/// Samples the surrogate and draws densities, modes over the inputs that matter most, Sobol' indices and the decay of its
+/// coefficients. With --study it also runs the model, and shows where the two differ. The page stands alone: no scripts, nothing
+/// to load.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Surrogate file
+    pub surrogate: PathBuf,
+
+    /// Study it was built from: the model is run and compared with the surrogate
+    #[arg(long, value_name = "STUDY")]
+    pub study: Option<PathBuf>,
+
+    /// HTML file
+    #[arg(short, long, value_name = "FILE", default_value = "report.html")]
+    pub output: PathBuf,
+
+    /// Number of samples of the surrogate, as in 1000000 or 1e6
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, default_value = "1000000")]
+    pub samples: u64,
+
+    /// Number of model runs with --study [default: 10000; of a program 100]
+    #[arg(long, value_name = "M", value_parser = run_count, requires = "study")]
+    pub runs: Option<u64>,
+
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+
+    /// Seed of all points
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+}
+
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.surrogate)?;
     let study = options.study.as_deref().map(read_study).transpose()?;
     let inputs: Vec<&Path> =
         [Some(options.surrogate.as_path()), options.study.as_deref()].into_iter().flatten().collect();
-    keep_inputs(&options.output, &inputs)?;
-    keep_unmarked_files(&options.output, SURROGATE_PAGE)?;
-    check_writable(&options.output)?;
+    claim(&options.output, Output::Marked(SURROGATE_PAGE), &inputs)?;
     let surrogate = &artifact.surrogate;
-    let name = &surrogate.provenance.study_name;
     let start = Instant::now();
     let model = match (&study, &options.study) {
         (Some(study), Some(path)) => {
             let what = path.display().to_string();
             check_problem(surrogate, study).with_context(|| what.clone())?;
-            let books = open_here(context, study, &options.recording)?;
+            let books = context.books_of_sampling(study, &options.recording.to_recording())?;
             let campaign = Campaign { study, ledger: Some(&books.ledger) };
             let default_runs = if study.model.is_external() { PROGRAM_RUNS } else { RUNS };
             let found =
                 ModelSample::new(campaign, options.runs.unwrap_or(default_runs), options.seed, &context.terminal)
                     .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
-                    .inspect_err(|_| books.say_recorded(context))
-                    .map_err(|error| interruptible(error.clone(), error.is_interruption(), &what))?;
-            Some(found)
+                    .inspect_err(|_| context.say_recorded(&books))
+                    .with_context(|| what.clone())?;
+            let seconds = start.elapsed().as_secs_f64();
+            let compare = CompareReport::new(&surrogate.provenance.study_name, surrogate, &found.0, options.seed, seconds);
+            Some((found.1, compare))
         }
         _ => None,
     };
-    let runs = surrogate.training.counts.direct_computations;
-    let compare = model
-        .as_ref()
-        .map(|(comparison, _)| CompareReport::new(name, runs, comparison, options.seed, start.elapsed().as_secs_f64()));
     let (points, block) = at_random_points(surrogate, options.seed);
-    let eval = sample(context, surrogate, options.samples, options.seed)?;
+    let eval = context.sample(surrogate, options.samples, options.seed)?;
     let bytes = std::fs::metadata(&options.surrogate).map_or(0, |metadata| metadata.len());
     let html = SurrogatePage {
         surrogate,
@@ -67,7 +96,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
         eval: &eval,
         points: &points,
         block: &block,
-        validation: model.as_ref().zip(compare.as_ref()).map(|((_, max_re), compare)| Validation { max_re, compare }),
+        validation: model.as_ref().map(|(max_re, compare)| Validation { max_re, compare }),
     }
     .to_html();
     save(&options.output, html.as_bytes())?;
@@ -75,7 +104,7 @@ pub(in super::super) fn report(context: &Context, options: &Report) -> anyhow::R
         file: options.output.display().to_string(),
         bytes: html.len(),
         stable_proportion: eval.stable_proportion,
-        compare,
+        compare: model.map(|(_, compare)| compare),
     })?;
     Ok(Ending::Done)
 }
@@ -103,7 +132,7 @@ impl fmt::Display for Written {
             f,
             "written to {} ({} bytes); open it in a browser",
             self.file,
-            crate::report::count(self.bytes as u64)
+            count(self.bytes as u64)
         )
     }
 }

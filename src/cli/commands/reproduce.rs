@@ -1,16 +1,53 @@
 //! `pcc reproduce`
 
-use super::super::arguments::{Part, Reproduce};
-use super::super::{Context, Ending, complain};
-use super::{REPRODUCTION_PAGE, interruptible, keep_unmarked_files};
+use crate::cli::overwrite::{Output, REPRODUCTION_PAGE, claim};
+use crate::cli::shared_options::{run_count, seed};
+use crate::cli::{Context, Ending, complain};
 use crate::report::{figure_sheets, short_table_2};
-use crate::reproduce::{Options, Reproduction, Row};
+use crate::reproduce::{Options as Parts, Reproduction, Row};
 use anyhow::Context as _;
-use pcc_evaluate::foundation::{check_writable, save};
+use clap::{Args, ValueEnum};
+use pcc_evaluate::foundation::save;
 use serde::Serialize;
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
+
+/// Reproduce the paper: its table 2 and figures 3 and 4, and what lies beyond
+///
+/// Builds the clutch by full, multi-element and sparse expansions of its eigenvalues and of invariants, for one to eight
+/// uncertain parameters, compares all with the model on the same points, and writes table2.csv, table2.md, the figures as SVG
+/// and report.html; files of these names in DIR are replaced. Takes about half a minute on two cores. If it is interrupted, the rows
+/// that are done are kept until the next run, in table2.partial.csv if there was a table already.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Only this part
+    #[arg(long, value_enum)]
+    pub only: Option<Part>,
+
+    /// Folder for the files
+    #[arg(short, long, value_name = "DIR", default_value = "reproduction")]
+    pub output: PathBuf,
+
+    /// Seed of the points, and of the first of five designs
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
+    /// Model runs to compare with, for each number of uncertain parameters
+    #[arg(long, value_name = "N", value_parser = run_count, default_value = "10000")]
+    pub runs: u64,
+}
+
+/// A part of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Part {
+    /// All methods compared
+    Table2,
+    /// Coalescence of the two modes
+    Figure3,
+    /// Growth rates by model and surrogate
+    Figure4,
+}
 
 /// What `table2.csv` starts with.
 const ROWS: &str = "r,method,order,direct_computations";
@@ -19,7 +56,7 @@ const ROWS: &str = "r,method,order,direct_computations";
 const SHEET: &str = "sheet-title";
 
 /// The files that are written, and what each has near its start.
-fn targets(wanted: &Options) -> Vec<(&'static str, &'static str)> {
+fn targets(wanted: &Parts) -> Vec<(&'static str, &'static str)> {
     let mut targets = vec![("report.html", REPRODUCTION_PAGE)];
     if wanted.table_2 {
         let table = [("table2.csv", ROWS), ("table2.partial.csv", ROWS), ("table2.md", "# Table 2 of Kieu")];
@@ -35,9 +72,9 @@ fn targets(wanted: &Options) -> Vec<(&'static str, &'static str)> {
     targets
 }
 
-pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> anyhow::Result<Ending> {
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let wants = |part| options.only.is_none_or(|only| only == part);
-    let wanted = Options {
+    let wanted = Parts {
         table_2: wants(Part::Table2),
         figure_3: wants(Part::Figure3),
         figure_4: wants(Part::Figure4),
@@ -48,8 +85,7 @@ pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> any
     std::fs::create_dir_all(folder).with_context(|| format!("folder {} cannot be created", folder.display()))?;
     let page = folder.join("report.html");
     for (name, mark) in targets(&wanted) {
-        keep_unmarked_files(&folder.join(name), mark)?;
-        check_writable(&folder.join(name))?;
+        claim(&folder.join(name), Output::Marked(mark), &[])?;
     }
     let start = Instant::now();
     let mut work = Reproduction::new(wanted);
@@ -68,7 +104,7 @@ pub(in super::super) fn reproduce(context: &Context, options: &Reproduce) -> any
                     }
                     Err(lost) => complain(&format!("the rows that were done could not be kept: {lost:#}")),
                 }
-                return Err(interruptible(error.clone(), error.is_interruption(), "reproduce"));
+                return Err(anyhow::Error::from(error).context("reproduce"));
             }
         }
     }

@@ -1,23 +1,45 @@
 //! `pcc run`: the main job end to end.
 
-use super::super::arguments::Run;
-use super::super::recording::{self, journal_of_build};
-use super::super::run_arguments::Recording;
-use super::super::{Context, Ending};
-use super::build::build_to_file;
-use super::compare::judge;
-use super::eval::sample;
-use super::{keep_other_files, read_study};
-use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table, count};
+use crate::cli::inputs::read_study;
+use crate::cli::overwrite::{Output, refuse_to_replace};
+use crate::cli::shared_options::{RecordingOptions, seed};
+use crate::cli::{Context, Ending};
+use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table};
 use anyhow::Context as _;
-use pcc_compile::campaign::Campaign;
+use clap::Args;
+use pcc_compile::campaign::{Books, Campaign};
 use pcc_compile::mechanics::model::ModelError;
 use pcc_compile::mechanics::spectrum::Target;
+use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::{ModelSettings, Study};
 use pcc_evaluate::artifact::Format;
+use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Build, evaluate and check a study end to end
+///
+/// Builds the surrogate, samples it a million times and compares it with ten thousand direct computations at the same
+/// points (a hundred, if a program makes them). Without STUDY it takes the built-in one: the clutch of the paper with all eight parameters uncertain.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct Options {
+    /// Study file [default: the built-in clutch with 8 uncertain parameters]
+    pub study: Option<PathBuf>,
+
+    /// Folder for the surrogate
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub output: PathBuf,
+
+    /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for samples]
+    #[arg(long, value_name = "S", value_parser = seed())]
+    pub seed: Option<u64>,
+
+    #[command(flatten)]
+    pub recording: RecordingOptions,
+}
 
 /// The clutch of the paper with all eight parameters uncertain, by invariants.
 const BUILT_IN_STUDY: &str = include_str!("../../../surrogates/clutch-r8.toml");
@@ -35,7 +57,7 @@ const COMPARE_SAMPLES: u64 = 10_000;
 const COMPARE_PROGRAM_RUNS: u64 = 100;
 const SAMPLE_SEED: u64 = 1;
 
-pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<Ending> {
+pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = match &options.study {
         Some(path) => runnable(read_study(path)?).with_context(|| path.display().to_string())?,
         None => Study::from_toml(BUILT_IN_STUDY).context("the built-in study")?,
@@ -46,7 +68,8 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
     let method = method_name(&study);
     let (surrogate, build, compare) = build_and_compare(context, options, study, &source)?;
-    let eval = sample(context, &surrogate, EVAL_SAMPLES, seed)
+    let eval = context
+        .sample(&surrogate, EVAL_SAMPLES, seed)
         .with_context(|| format!("after the surrogate was written to {}", build.file))?;
     let mut methods = vec![MethodRow::new(method, &build, &compare)];
     if options.study.is_none() {
@@ -63,7 +86,7 @@ pub(in super::super) fn run(context: &Context, options: &Run) -> anyhow::Result<
 /// Refuses models that pcc does not run.
 fn runnable(study: Study) -> anyhow::Result<Study> {
     match study.model {
-        ModelSettings::Table(_) => Err(ModelError::Unrun.into()),
+        ModelSettings::Table(_) => Err(ModelError::NotRun.into()),
         _ => Ok(study),
     }
 }
@@ -89,24 +112,27 @@ fn method_name(study: &Study) -> &'static str {
 /// Builds the surrogate of `study` into the output folder and compares it with the model.
 fn build_and_compare(
     context: &Context,
-    options: &Run,
+    options: &Options,
     mut study: Study,
     source: &str,
 ) -> anyhow::Result<(Surrogate, BuildReport, CompareReport)> {
     study.seed = options.seed.unwrap_or(study.seed);
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
     let path = options.output.join(format!("{}.{}", study.name, Format::Binary.extension()));
-    keep_other_files(&path)?;
-    let (surrogate, build) = build_to_file(context, &study, source, &path, Format::Binary, &options.recording)?;
-    let journal = study.model.is_external().then(|| journal_of_build(&study, &path));
-    // The build's own runs are in it by now.
-    let recording = Recording { resume: options.recording.resume || journal.is_some(), ..options.recording.clone() };
-    let books = recording::open(context, &study, &recording, journal)?;
+    refuse_to_replace(&path, Output::Surrogate, &[])?;
+    let recording = options.recording.to_recording();
+    let built = context.build_to_file(&study, source, &path, Format::Binary, &recording)?;
+    let build = BuildReport::of_file(&study, &built, path.display().to_string());
+    let books = Books::after_build(&study, &recording, &path)?;
+    books.notes.iter().for_each(|note| context.note(note));
     let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
     let samples = if study.model.is_external() { COMPARE_PROGRAM_RUNS } else { COMPARE_SAMPLES };
-    let compare = judge(context, &surrogate, campaign, source, samples, seed)
+    let start = Instant::now();
+    let comparison = compare_with_model(&built.surrogate, campaign, samples, seed, &context.terminal)
+        .with_context(|| source.to_owned())
         .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
-    Ok((surrogate, build, compare))
+    let compare = CompareReport::new(&study.name, &built.surrogate, &comparison, seed, start.elapsed().as_secs_f64());
+    Ok((built.surrogate, build, compare))
 }
 
 /// A file name as a shell takes it.

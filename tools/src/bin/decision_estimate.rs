@@ -4,7 +4,7 @@
 //! derivatives and with values alone, and compares it with the model on POINTS points, 100 000 by default. One point is 0.005 % of
 //! the clutch's proportion; ratios of errors below a few of them are noise and left out of the summary.
 
-use pcc_compile::reference::compare;
+use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use std::error::Error;
@@ -37,7 +37,7 @@ fn ratios(more: &str, levels: usize, points: u64) -> Result<Vec<f64>, Box<dyn Er
             let surrogate = pcc_compile::compilation::build(&study, &Silent)?;
             // Small designs have too few points that nothing was tuned on.
             let Some(estimate) = surrogate.decision.proportion_error.map(|share| 100.0 * share) else { continue };
-            let comparison = compare(&surrogate, &study, points, seed, &Silent)?;
+            let comparison = compare_with_model(&surrogate, &study, points, seed, &Silent)?;
             let truth = comparison.relative_error_percent().ok_or("never stable")?;
             let runs = surrogate.training.counts.direct_computations;
             let misclassified = comparison.misclassified_percent();

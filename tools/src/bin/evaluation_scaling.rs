@@ -3,7 +3,8 @@
 //! `cargo build --release && cargo run --release --example evaluation_scaling -- [LARGEST]` runs `pcc eval` on the shipped surrogate with
 //! eight inputs as a user would, start to end, by default up to 10⁹ samples: about two minutes on two cores.
 
-use pcc::report::{Align, Table, count};
+use pcc::report::{Align, Table};
+use pcc_evaluate::foundation::count;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -3,7 +3,7 @@
 //! `cargo run --release --example invariants_table -- [POINTS] [INPUTS…]` prints one row per number of inputs and seed: with
 //! derivatives, with values alone, and for 8 inputs with other tolerances and by the paper's method with ten times the runs.
 
-use pcc_compile::reference::compare;
+use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use std::error::Error;
@@ -81,7 +81,7 @@ fn rows(study: &Study, points: u64, bar: Bar) -> Result<bool, Box<dyn Error>> {
         let start = Instant::now();
         let surrogate = pcc_compile::compilation::build(&study, &Silent)?;
         let seconds = start.elapsed().as_secs_f64();
-        let comparison = compare(&surrogate, &study, points, 1, &Silent)?;
+        let comparison = compare_with_model(&surrogate, &study, points, 1, &Silent)?;
         let runs = surrogate.training.counts.direct_computations;
         let error = comparison.relative_error_percent().ok_or("the model is never stable")?;
         let misclassified = comparison.misclassified_percent();

@@ -4,7 +4,7 @@
 //! r), `initial_r2` (times r²), `q_norm`, `epsilon_forward`, `epsilon_backward`, `max_degree`, `s2_target`, `inputs` (one r only) overrides the
 //! defaults for all r at once: this is how the defaults were chosen.
 
-use pcc_compile::reference::compare;
+use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::{FitMethod, Study};
 use pcc_evaluate::foundation::Silent;
 use std::time::Instant;
@@ -50,7 +50,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let start = Instant::now();
             let surrogate = pcc_compile::compilation::build(&study, &Silent)?;
             let seconds = start.elapsed().as_secs_f64();
-            let comparison = compare(&surrogate, &study, points, seed, &Silent)?;
+            let comparison = compare_with_model(&surrogate, &study, points, seed, &Silent)?;
             let runs = surrogate.training.counts.direct_computations;
             let error = comparison.relative_error_percent().ok_or("the model is never stable")?;
             let holds = runs <= paper_runs && error <= paper_error;

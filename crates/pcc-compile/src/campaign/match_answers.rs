@@ -59,6 +59,7 @@ pub enum RowProblem {
         /// Number of the run.
         run: u64,
         /// Why.
+        #[source]
         cause: SpectrumError,
     },
     /// The inputs are no point of the design.
@@ -114,7 +115,7 @@ pub fn match_answers(
 ) -> Result<MatchedAnswers, Vec<RowProblem>> {
     let by_bits: HashMap<Vec<u64>, usize> = (0..asked.len()).map(|i| (bits(&asked[i].point), i)).collect();
     let mut outcomes: HashMap<usize, RunOutcome> = HashMap::new();
-    let (mut match_answers, mut problems) = (MatchedAnswers { records: Vec::new(), repeated: 0 }, Vec::new());
+    let (mut matched, mut problems) = (MatchedAnswers { records: Vec::new(), repeated: 0 }, Vec::new());
     let model: [u8; HASH_BYTES] = study.model_hash();
     for row in rows {
         let i = match find(study, asked, &by_bits, row) {
@@ -141,23 +142,23 @@ pub fn match_answers(
             (Some(RunOutcome::Answered(before)), RunOutcome::Answered(now)) => {
                 let (difference, scale) = difference(&before.eigenvalues, &now.eigenvalues);
                 match (difference > ANSWER_TOLERANCE * scale, replaces) {
-                    (false, _) => match_answers.repeated += 1,
+                    (false, _) => matched.repeated += 1,
                     (true, false) => problems.push(RowProblem::Contradiction { line, run, difference }),
                     (true, true) => {
                         outcomes.insert(i, outcome.clone());
-                        match_answers.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+                        matched.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
                     }
                 }
             }
-            (Some(RunOutcome::Answered(_)), RunOutcome::Failed { .. }) => match_answers.repeated += 1,
-            (Some(before), now) if before == now => match_answers.repeated += 1,
+            (Some(RunOutcome::Answered(_)), RunOutcome::Failed { .. }) => matched.repeated += 1,
+            (Some(before), now) if before == now => matched.repeated += 1,
             _ => {
                 outcomes.insert(i, outcome.clone());
-                match_answers.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
+                matched.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
             }
         }
     }
-    if problems.is_empty() { Ok(match_answers) } else { Err(problems) }
+    if problems.is_empty() { Ok(matched) } else { Err(problems) }
 }
 
 /// The run a row belongs to.

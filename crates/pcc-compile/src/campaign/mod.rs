@@ -3,8 +3,10 @@
 pub mod journal;
 mod ledger;
 mod match_answers;
+mod recording;
 mod run;
 
 pub use ledger::{Campaign, DesignPoint, Failure, Ledger};
 pub use match_answers::{MatchedAnswers, RowProblem, match_answers};
+pub use recording::{Books, Note, Recording, RecordingError, journal_here, journal_of_build, notes_on};
 pub use run::{Run, RunError, Runner};

@@ -21,6 +21,7 @@ pub enum RunError {
         /// Where.
         point: String,
         /// Why.
+        #[source]
         cause: ModelError,
     },
     /// Its eigenvalues cannot be sorted into modes, or a mode of `spectrum.modes` is missing.
@@ -29,6 +30,7 @@ pub enum RunError {
         /// Where.
         point: String,
         /// Why.
+        #[source]
         cause: SpectrumError,
     },
     /// Two runs found different numbers of oscillating modes, so ranks do not name the same modes.
@@ -59,7 +61,7 @@ pub enum RunError {
     #[error(transparent)]
     Journal(#[from] JournalError),
     /// The user asked to stop.
-    #[error(transparent)]
+    #[error("{0}")]
     Interrupted(#[from] Interrupted),
 }
 

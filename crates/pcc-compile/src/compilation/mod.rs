@@ -5,6 +5,9 @@ mod decision;
 mod elements;
 mod evaluations;
 mod record;
+mod to_file;
+
+pub use to_file::{BuildFileError, BuiltFile, build_to_file};
 
 use components::ComponentFit;
 use decision::{Previous, judge};
@@ -36,6 +39,7 @@ pub enum BuildError {
         /// Where: the inputs with their values.
         point: String,
         /// Why.
+        #[source]
         cause: ClusterError,
     },
     /// The study asks for derivatives, which the model does not have.
@@ -57,15 +61,8 @@ pub enum BuildError {
     #[error(transparent)]
     IndexSet(#[from] IndexSetError),
     /// The user asked to stop.
-    #[error(transparent)]
+    #[error("{0}")]
     Interrupted(#[from] Interrupted),
-}
-
-impl BuildError {
-    /// Whether the user asked to stop.
-    pub fn is_interruption(&self) -> bool {
-        matches!(self, Self::Interrupted(_) | Self::Run(RunError::Interrupted(_)))
-    }
 }
 
 /// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool: the same bits

@@ -25,7 +25,7 @@ const SURROGATE_SAMPLES: u64 = 1_000_000;
 ///
 /// [`ReferenceError`]. Whether the study asks what the surrogate answers is for the caller to decide; inputs
 /// must agree, or [`ReferenceError::OtherProblem`] is returned.
-pub fn certify<'a>(
+pub fn certify_with_model<'a>(
     surrogate: &Surrogate,
     campaign: impl Into<Campaign<'a>>,
     runs: u64,

@@ -100,7 +100,7 @@ fn relative_error_percent(found: f64, truth: f64) -> Option<f64> {
 ///
 /// [`ReferenceError::OtherProblem`] if the surrogate was built for another problem, else as
 /// [`super::monte_carlo`].
-pub fn compare<'a>(
+pub fn compare_with_model<'a>(
     surrogate: &Surrogate,
     campaign: impl Into<Campaign<'a>>,
     samples: u64,

@@ -45,6 +45,7 @@ pub enum ReferenceError {
         /// Where: the inputs with their values.
         point: String,
         /// Why.
+        #[source]
         cause: SpectrumError,
     },
     /// The surrogate could not be sampled.
@@ -62,11 +63,6 @@ impl ReferenceError {
     /// The refusal of a study that asks another question than the surrogate answers.
     pub(super) fn other_problem(surrogate: &Surrogate, study: &Study) -> Self {
         Self::OtherProblem { surrogate: surrogate.provenance.problem_hash.clone(), study: study.problem_hash() }
-    }
-
-    /// Whether the user asked to stop.
-    pub fn is_interruption(&self) -> bool {
-        matches!(self, Self::Run(RunError::Interrupted(_)))
     }
 }
 

@@ -5,7 +5,7 @@ mod compare;
 mod direct_computations;
 mod sample;
 
-pub use certify::certify;
-pub use compare::{Comparison, ComponentError, compare};
+pub use certify::certify_with_model;
+pub use compare::{Comparison, ComponentError, compare_with_model};
 pub use direct_computations::{Reference, ReferenceError, check_problem, monte_carlo};
 pub use sample::ModelSample;

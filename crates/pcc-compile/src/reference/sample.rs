@@ -155,7 +155,7 @@ impl<'a> ModelSample<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::compare;
+    use crate::reference::compare_with_model;
     use pcc_evaluate::artifact::decode;
     use pcc_evaluate::foundation::Silent;
 
@@ -165,7 +165,7 @@ mod tests {
         let surrogate = decode(include_bytes!("../../../../surrogates/clutch-r2-eigenvalues.pcc")).unwrap().surrogate;
         let sample = ModelSample::new(&study, 10_001, 3, &Silent).unwrap();
         let (kept, fresh) =
-            (sample.compare(&surrogate).unwrap(), compare(&surrogate, &study, 10_001, 3, &Silent).unwrap());
+            (sample.compare(&surrogate).unwrap(), compare_with_model(&surrogate, &study, 10_001, 3, &Silent).unwrap());
         assert_eq!(kept, fresh);
         let block = sample.surrogate_at(&surrogate, 5000).unwrap();
         let expected = surrogate.evaluate(&sample.point(4999));

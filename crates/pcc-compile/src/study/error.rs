@@ -95,6 +95,7 @@ pub enum StudyError {
         /// Where.
         place: Place,
         /// What.
+        #[source]
         cause: Box<MatricesError>,
     },
     /// An argument that names a file beside the study, which runs in folders of their own would not find.
@@ -219,6 +220,7 @@ pub enum StudyError {
         /// Where.
         place: Place,
         /// Why.
+        #[source]
         cause: MarginalError,
     },
     /// The distribution is given in neither or both of its two forms.
@@ -263,6 +265,7 @@ pub enum StudyError {
         /// Where.
         place: Place,
         /// Why.
+        #[source]
         cause: InputError,
     },
 }

@@ -2,6 +2,7 @@
 
 mod defaults;
 mod error;
+mod file;
 mod fit;
 mod identity;
 mod matrices;
@@ -13,13 +14,14 @@ mod settings;
 mod validate;
 
 pub use error::{Place, StudyError};
+pub use file::StudyFileError;
 pub use settings::{
     Command, Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, FullExpansion, ModelSettings,
     MultiElement, Smooth, Solver, SpectrumSettings, Stepwise, Table,
 };
 
 use crate::mechanics::model::matrices::Matrices;
-use crate::mechanics::model::{Clutch, Model, ModelError, Unrun};
+use crate::mechanics::model::{Clutch, Model, ModelError, TableModel};
 use pcc_evaluate::probability::inputs::InputSpace;
 use std::path::Path;
 
@@ -102,7 +104,7 @@ impl Study {
             }
             ModelSettings::Matrices(description) => Ok(Box::new(Matrices::new(description, &uncertain)?)),
             ModelSettings::Command(command) => Ok(Box::new(command.program(&uncertain))),
-            ModelSettings::Table(_) => Ok(Box::new(Unrun)),
+            ModelSettings::Table(_) => Ok(Box::new(TableModel)),
         }
     }
 

@@ -1,6 +1,7 @@
 //! What can be wrong with a surrogate file, in the order in which it is found.
 
 use super::version::{MAJOR, MINOR};
+use crate::foundation::FileError;
 use thiserror::Error;
 
 /// Why a file is not a usable surrogate.
@@ -155,4 +156,40 @@ pub enum WriteError {
         /// What the encoder said.
         message: String,
     },
+}
+
+/// Why this version does not write a surrogate that it has read.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum LossError {
+    /// It has a section that this version does not know.
+    #[error("has a section of kind {kind} that this pcc does not know and would lose; use the pcc that wrote it")]
+    Section {
+        /// Kind of the section.
+        kind: u16,
+    },
+    /// Its format is newer.
+    #[error("has format {major}.{minor}, which this pcc would write as an older one; use the pcc that wrote it")]
+    NewerMinor {
+        /// Major version.
+        major: u16,
+        /// Minor version.
+        minor: u16,
+    },
+    /// Another program has arranged it otherwise.
+    #[error(
+        "is arranged in another way than pcc writes it, so writing it again would change its content_id; use the program that \
+         wrote it"
+    )]
+    Arrangement,
+}
+
+/// Why a surrogate was not saved.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum SaveError {
+    /// It could not be encoded.
+    #[error(transparent)]
+    Encode(#[from] WriteError),
+    /// The file could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
 }

@@ -17,14 +17,16 @@ mod to_v1;
 pub mod v1;
 pub mod version;
 
-pub use error::{ReadError, WriteError};
+pub use error::{LossError, ReadError, SaveError, WriteError};
 
 pub use schema::schema;
 
+use crate::foundation::save;
 use crate::surrogate::Surrogate;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use version::{Compatibility, compatibility};
 
 /// Files above this size are refused before they are decoded: the largest sensible surrogates have some megabytes.
 const LARGEST_FILE: u64 = 1 << 28;
@@ -69,6 +71,24 @@ pub struct Artifact {
     pub is_canonical: bool,
     /// Kinds of optional sections this version does not know; they were skipped.
     pub unknown_sections: Vec<u16>,
+}
+
+impl Artifact {
+    /// Whether this version can write the surrogate again without changing more than it should.
+    ///
+    /// # Errors
+    ///
+    /// [`LossError`] names what would be lost.
+    pub fn check_lossless(&self) -> Result<(), LossError> {
+        if let [kind, ..] = self.unknown_sections[..] {
+            return Err(LossError::Section { kind });
+        }
+        let (major, minor) = self.version;
+        if compatibility(major, minor) == Compatibility::NewerMinor {
+            return Err(LossError::NewerMinor { major, minor });
+        }
+        if self.is_canonical { Ok(()) } else { Err(LossError::Arrangement) }
+    }
 }
 
 /// Encodes a surrogate.
@@ -143,4 +163,25 @@ pub fn read(path: &Path) -> Result<Artifact, ReadError> {
         .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
         .map_err(|error| ReadError::Io(error.to_string()))?;
     decode(&bytes)
+}
+
+impl Surrogate {
+    /// Reads a surrogate file of either form.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        read(path.as_ref()).map(|artifact| artifact.surrogate)
+    }
+
+    /// Writes a surrogate file, whole or not at all: JSON if its name ends in `.json`, else binary.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`]; an existing file is then unchanged.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let path = path.as_ref();
+        Ok(save(path, &encode(self, Format::of_path(path))?)?)
+    }
 }

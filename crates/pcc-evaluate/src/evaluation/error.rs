@@ -24,13 +24,6 @@ pub enum EvalError {
         inputs: usize,
     },
     /// The user asked to stop.
-    #[error(transparent)]
+    #[error("{0}")]
     Interrupted(#[from] Interrupted),
-}
-
-impl EvalError {
-    /// Whether the user asked to stop.
-    pub fn is_interruption(&self) -> bool {
-        matches!(self, Self::Interrupted(_))
-    }
 }

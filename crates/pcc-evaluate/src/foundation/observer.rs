@@ -1,11 +1,23 @@
 //! How long work tells what it does and learns that it should stop.
 
-use thiserror::Error;
+use std::error::Error;
 
 /// The user asked long work to stop.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("interrupted")]
 pub struct Interrupted;
+
+/// Whether the user asked to stop, and that is why something failed: whether [`Interrupted`] is among the causes of `error`.
+pub fn is_interruption(error: &(dyn Error + 'static)) -> bool {
+    let mut cause = Some(error);
+    while let Some(error) = cause {
+        if error.is::<Interrupted>() {
+            return true;
+        }
+        cause = error.source();
+    }
+    false
+}
 
 /// Watches long work. Calls come from several threads.
 pub trait Observer: Sync {

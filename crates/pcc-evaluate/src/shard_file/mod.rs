@@ -235,9 +235,33 @@ impl Part {
         Survey::new(&self.surrogate, &self.question, InstructionSet::best())
     }
 
+    /// Samples that were evaluated.
+    ///
+    /// # Errors
+    ///
+    /// [`SurveyError`] if the question does not fit the surrogate.
+    pub fn samples(&self) -> Result<u64, SurveyError> {
+        Ok(self.survey()?.division().samples_in(&self.findings.chunks()))
+    }
+
+    /// Fails if the first or the last shards are missing; between the others none is, once they are merged.
+    ///
+    /// # Errors
+    ///
+    /// [`PartError::Gap`].
+    pub fn check_complete(&self) -> Result<(), PartError> {
+        let (found, all) = (self.findings.chunks(), self.survey()?.division().chunks());
+        let (place, missing) = match found.start {
+            0 if found.end == all => return Ok(()),
+            0 => ("after those of all parts", found.end..all),
+            start => ("before those of all parts", 0..start),
+        };
+        Err(PartError::Gap { place: place.to_owned(), missing, chunks: all })
+    }
+
     /// Whether it is all of the evaluation.
     pub fn is_complete(&self) -> bool {
-        self.survey().is_ok_and(|survey| self.findings.chunks() == (0..survey.division().chunks()))
+        self.check_complete().is_ok()
     }
 }
 

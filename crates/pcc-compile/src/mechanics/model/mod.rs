@@ -5,12 +5,12 @@ pub mod command;
 pub mod matrices;
 mod parameter;
 mod second_order;
-mod unrun;
+mod table;
 
 pub use clutch::{CLUTCH_PARAMETERS, Clutch};
 pub use parameter::{Parameter, Range};
 pub use second_order::{Linearization, SecondOrder};
-pub use unrun::Unrun;
+pub use table::TableModel;
 
 use crate::numerics::eigenvalues::EigenvalueError;
 use command::{CommandError, CommandFailure};
@@ -58,7 +58,7 @@ pub enum ModelError {
         "models of kind \"table\" are not run by pcc: write the points with pcc design STUDY --emit rows.csv, run them, and hand the \
          answers over with pcc ingest STUDY rows.csv"
     )]
-    Unrun,
+    NotRun,
     /// The mass matrix cannot be inverted.
     #[error("the mass matrix is singular")]
     SingularMass,

@@ -2,11 +2,15 @@
 //!
 //! Written once for all instruction sets: every lane holds one point and goes through the same operations in the same
 //! order, fused multiply-add among them, so all sets give the same bits.
+//!
+//! All of it must end up in the one function that is compiled for an instruction set: a part that does not is twenty times slower.
+//! Hence `inline(always)`, and loops in place of closures, which the compiler may leave apart.
+
+#![allow(clippy::needless_range_loop, reason = "indices below a constant leave no check and no iterator behind")]
 
 use super::lanes::{Lanes, VECTORS, Vectors};
 use super::operations::{Leaf, Operations, Step};
 use pulp::Simd;
-use std::array::from_fn;
 
 /// Evaluates `program` at `points`, one entry per input: fills the `table` of univariate values and products, and
 /// writes `components` by id.
@@ -36,13 +40,14 @@ fn univariates<S: Simd>(simd: S, program: &Operations, part: usize, points: &[La
         steps = rest;
         let (mut before, mut current) = ([simd.splat_f64s(0.0); VECTORS], [simd.splat_f64s(1.0); VECTORS]);
         for (&Step { slope, offset, coupling }, row) in of_input.iter().zip(&mut rows) {
-            let [slope, offset, coupling] = [slope, offset, coupling].map(|number| simd.splat_f64s(number));
-            let next: Vectors<S> = from_fn(|v| {
+            let (slope, offset) = (simd.splat_f64s(slope), simd.splat_f64s(offset));
+            let coupling = simd.splat_f64s(coupling);
+            for v in 0..VECTORS {
                 let line = simd.mul_add_f64s(slope, x[v], offset);
-                simd.mul_add_f64s(line, current[v], simd.mul_f64s(coupling, before[v]))
-            });
-            (before, current) = (current, next);
-            row.write::<S>(part, next);
+                let next = simd.mul_add_f64s(line, current[v], simd.mul_f64s(coupling, before[v]));
+                (before[v], current[v]) = (current[v], next);
+            }
+            row.write::<S>(part, current);
         }
     }
 }
@@ -71,8 +76,11 @@ fn stages<S: Simd>(simd: S, program: &Operations, part: usize, table: &mut [Lane
     let (mut product, mut run, mut group, mut leaf) = (0, 0, 0, 0);
     for stage in &program.stages {
         for (number, factors) in program.products[product..stage.products_end].iter().enumerate() {
-            let [parent, univariate] = factors.map(|row| table[row as usize].read::<S>(part));
-            let value = from_fn(|v| simd.mul_f64s(parent[v], univariate[v]));
+            let mut value = table[factors[0] as usize].read::<S>(part);
+            let univariate = table[factors[1] as usize].read::<S>(part);
+            for v in 0..VECTORS {
+                value[v] = simd.mul_f64s(value[v], univariate[v]);
+            }
             table[program.steps.len() + product + number].write::<S>(part, value);
         }
         product = stage.products_end;
@@ -85,7 +93,9 @@ fn stages<S: Simd>(simd: S, program: &Operations, part: usize, table: &mut [Lane
                 let sum = add_leaves(simd, &leaves[leaf..end], part, table, initial);
                 leaf = end;
                 let parent = table[sum_of.parent as usize].read::<S>(part);
-                total = from_fn(|v| simd.mul_add_f64s(sum[v], parent[v], total[v]));
+                for v in 0..VECTORS {
+                    total[v] = simd.mul_add_f64s(sum[v], parent[v], total[v]);
+                }
             }
             group = of_component.groups_end;
             component.write::<S>(part, total);
@@ -96,10 +106,13 @@ fn stages<S: Simd>(simd: S, program: &Operations, part: usize, table: &mut [Lane
 
 /// sum + Σ coefficient × row.
 #[inline(always)]
-fn add_leaves<S: Simd>(simd: S, leaves: &[Leaf], part: usize, table: &[Lanes], sum: Vectors<S>) -> Vectors<S> {
-    leaves.iter().fold(sum, |sum, leaf| {
+fn add_leaves<S: Simd>(simd: S, leaves: &[Leaf], part: usize, table: &[Lanes], mut sum: Vectors<S>) -> Vectors<S> {
+    for leaf in leaves {
         let row = table[leaf.row as usize].read::<S>(part);
         let coefficient = simd.splat_f64s(leaf.coefficient);
-        from_fn(|v| simd.mul_add_f64s(coefficient, row[v], sum[v]))
-    })
+        for v in 0..VECTORS {
+            sum[v] = simd.mul_add_f64s(coefficient, row[v], sum[v]);
+        }
+    }
+    sum
 }

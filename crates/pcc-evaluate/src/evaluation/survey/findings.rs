@@ -159,6 +159,11 @@ impl Findings {
         self.series.iter().all(Series::is_finite)
     }
 
+    /// Stable samples so far.
+    pub fn stable(&self) -> u64 {
+        self.total().map_or(0, |tally| tally.summary.stable)
+    }
+
     /// What is said of every point of the sweeps that is complete, of the one point without sweeps in any case.
     pub fn answer(&self, division: &Division) -> Answer {
         let is_complete = self.chunks() == (0..division.chunks());

@@ -69,6 +69,7 @@ pub enum MatricesError {
         /// Its name.
         file: String,
         /// Why.
+        #[source]
         cause: Box<MatrixMarketError>,
     },
     /// A needed matrix is missing.
@@ -150,6 +151,7 @@ pub enum MatricesError {
         /// Column, from 1.
         column: usize,
         /// Why.
+        #[source]
         cause: Box<ExpressionError>,
     },
     /// A factor that is no expression.
@@ -160,6 +162,7 @@ pub enum MatricesError {
         /// Term, from 1.
         term: usize,
         /// Why.
+        #[source]
         cause: Box<ExpressionError>,
     },
     /// A name that cannot be used, or a helper that is no expression.
@@ -170,6 +173,7 @@ pub enum MatricesError {
         /// The name.
         name: String,
         /// Why.
+        #[source]
         cause: Box<ExpressionError>,
     },
     /// An entry that is no number: at a point, or whatever the inputs.

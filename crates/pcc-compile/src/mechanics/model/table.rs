@@ -5,10 +5,10 @@ use nalgebra::Complex;
 
 /// A model that pcc cannot run.
 #[derive(Debug, Clone, Copy)]
-pub struct Unrun;
+pub struct TableModel;
 
-impl Model for Unrun {
+impl Model for TableModel {
     fn eigenvalues(&self, _: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
-        Err(ModelError::Unrun)
+        Err(ModelError::NotRun)
     }
 }

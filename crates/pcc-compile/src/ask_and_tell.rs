@@ -1,0 +1,175 @@
+//! Builds whose model somebody else runs: ask for the points, tell the answers, step by step.
+//!
+//! A build is stepped on what a journal knows of its runs. [`ask`] says which points it waits for; [`tell`] takes answers to them
+//! from a table, and takes none if the build could not go on with them. Once nothing is missing, [`crate::compilation::build`] with
+//! the journal makes the surrogate, with the bytes of a build that ran the model itself.
+
+use crate::campaign::journal::{Contents, Journal, JournalError, RunOutcome};
+use crate::campaign::{Campaign, DesignPoint, Ledger, RowProblem, RunError, match_answers};
+use crate::compilation::{BuildError, build};
+use crate::mechanics::model::command::results_table::ResultRow;
+use crate::study::Study;
+use pcc_evaluate::foundation::{Observer, is_interruption, plural};
+use thiserror::Error;
+
+/// Rows that are named when they cannot be taken.
+const SHOWN_PROBLEMS: usize = 10;
+
+/// Why a build cannot be stepped.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum AskError {
+    /// The study fits derivatives, and tables of results hold eigenvalues alone.
+    #[error(
+        "fits derivatives, which tables of results do not hold; set fit.derivatives = false, or let pcc run the model"
+    )]
+    Derivatives,
+    /// The answers there are cannot be right, or are not enough; or the user asked to stop.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+}
+
+/// Why answers were not taken; then none was.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TellError {
+    /// The build cannot be stepped.
+    #[error(transparent)]
+    Ask(#[from] AskError),
+    /// Rows that belong nowhere, or contradict what is known.
+    #[error("{} cannot be taken, so none was:\n{}", plural(.0.len(), "row"), shown(.0))]
+    Rows(Vec<RowProblem>),
+    /// With these answers the build would fail.
+    #[error("with these answers the build cannot go on, so none was taken: {0}")]
+    CannotGoOn(#[source] BuildError),
+    /// The journal could not be written.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+}
+
+fn shown(problems: &[RowProblem]) -> String {
+    let lines: Vec<String> = problems.iter().take(SHOWN_PROBLEMS).map(|problem| format!("  {problem}")).collect();
+    let more = match problems.len().saturating_sub(SHOWN_PROBLEMS) {
+        0 => String::new(),
+        more => format!("\n  and {}", plural(more, "other row")),
+    };
+    lines.join("\n") + &more
+}
+
+/// How far a build has come.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Every point it asked for, in the order of the design.
+    pub asked: Vec<DesignPoint>,
+    /// Whether it needs no more.
+    pub is_complete: bool,
+}
+
+impl Step {
+    /// The points that wait for an answer, with their numbers from 1.
+    pub fn open(&self) -> impl Iterator<Item = (u64, &[f64])> {
+        (1..).zip(&self.asked).filter(|(_, asked)| !asked.is_known).map(|(run, asked)| (run, asked.point.as_slice()))
+    }
+}
+
+/// What a table of results brought.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Told {
+    /// New answers.
+    pub answered: usize,
+    /// New failures.
+    pub failed: usize,
+    /// Rows that said what was known.
+    pub repeated: usize,
+    /// Points that the build waits for now.
+    pub missing: usize,
+    /// Whether it needs no more.
+    pub is_complete: bool,
+}
+
+/// Whether the build of `study` can be stepped at all.
+///
+/// # Errors
+///
+/// [`AskError::Derivatives`].
+pub fn check(study: &Study) -> Result<(), AskError> {
+    if study.uses_derivatives() { Err(AskError::Derivatives) } else { Ok(()) }
+}
+
+/// Steps the build of `study` as far as it goes on what `contents` has of its model. The model is not run.
+///
+/// # Errors
+///
+/// [`AskError`] if the build fits derivatives, or fails on these answers.
+///
+/// # Examples
+///
+/// ```
+/// use pcc_compile::{ask_and_tell::ask, campaign::journal::Contents, study::Study};
+/// use pcc_evaluate::foundation::Silent;
+/// let study = Study::from_toml(include_str!("../../../surrogates/clutch-r2-eigenvalues.toml"))?;
+/// let step = ask(&study, &Contents::default(), &Silent)?;
+/// assert_eq!((step.open().count(), step.is_complete), (60, false));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn ask(study: &Study, contents: &Contents, observer: &dyn Observer) -> Result<Step, AskError> {
+    check(study)?;
+    let (step, failure) = step(study, contents, observer);
+    match failure {
+        Some(error) => Err(error.into()),
+        None => Ok(step),
+    }
+}
+
+/// Takes `rows` of answers into `journal`, which has `contents`. With `replaces`, an answer that contradicts an earlier one takes its
+/// place.
+///
+/// # Errors
+///
+/// [`TellError`]; the journal is then as it was.
+pub fn tell(
+    study: &Study,
+    journal: &Journal,
+    mut contents: Contents,
+    rows: &[ResultRow],
+    replaces: bool,
+    observer: &dyn Observer,
+) -> Result<Told, TellError> {
+    check(study)?;
+    let known = Ledger::blank(study).knowing(&contents);
+    let (before, failure) = step(study, &contents, observer);
+    if let Some(error) = failure.as_ref().filter(|error| is_interruption(*error)) {
+        return Err(AskError::Build(error.clone()).into());
+    }
+    let outcome = |point: &[f64]| known.find(point).cloned();
+    let found = match_answers(study, &before.asked, outcome, rows, replaces).map_err(TellError::Rows)?;
+    // What would end the build must not get into the journal, where it could not be taken back.
+    contents.records.extend(found.records.iter().cloned());
+    let (after, failure) = match before.is_complete && found.records.is_empty() {
+        true => (before, None),
+        false => step(study, &contents, observer),
+    };
+    match failure {
+        Some(error) if is_interruption(&error) => return Err(AskError::Build(error).into()),
+        Some(error) => return Err(TellError::CannotGoOn(error)),
+        None => {}
+    }
+    journal.append(&found.records.iter().collect::<Vec<_>>())?;
+    let failed = found.records.iter().filter(|record| matches!(record.outcome, RunOutcome::Failed { .. })).count();
+    Ok(Told {
+        answered: found.records.len() - failed,
+        failed,
+        repeated: found.repeated,
+        missing: after.open().count(),
+        is_complete: after.is_complete,
+    })
+}
+
+/// The build as far as it goes, and what it failed with, other than a want of answers.
+fn step(study: &Study, contents: &Contents, observer: &dyn Observer) -> (Step, Option<BuildError>) {
+    let ledger = Ledger::blank(study).knowing(contents).asking();
+    let built = build(Campaign { study, ledger: Some(&ledger) }, observer);
+    let step = Step { asked: ledger.asked(), is_complete: built.is_ok() };
+    match built {
+        Ok(_) | Err(BuildError::Run(RunError::Unanswered { .. })) => (step, None),
+        Err(error) => (step, Some(error)),
+    }
+}

@@ -1,0 +1,89 @@
+//! A build whose runs are recorded and whose surrogate goes to a file.
+
+use super::{BuildError, build};
+use crate::campaign::journal::JournalError;
+use crate::campaign::{Books, Campaign, Failure, Note, Recording};
+use crate::study::Study;
+use pcc_evaluate::artifact::{Format, WriteError, encode};
+use pcc_evaluate::foundation::{FileError, Observer, check_writable, is_interruption, save};
+use pcc_evaluate::surrogate::Surrogate;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use thiserror::Error;
+
+/// Why there is no surrogate file.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum BuildFileError {
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A journal that somebody wants cannot be used.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The build failed.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// The surrogate cannot be encoded.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// A surrogate in a file, and what became of the model runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BuiltFile {
+    /// The surrogate.
+    pub surrogate: Surrogate,
+    /// Length of its file.
+    pub bytes: u64,
+    /// The journal of the runs, if it stays.
+    pub journal: Option<PathBuf>,
+    /// Runs that were known and not made again.
+    pub reused: u64,
+    /// Runs that failed and were skipped.
+    pub failures: Vec<Failure>,
+    /// Wall-clock time of the build.
+    pub elapsed_seconds: f64,
+}
+
+/// Builds the surrogate of `study` and writes it to `path`, which is tried before the first model run. `tell` is given what the user
+/// should know of recorded runs, when it is known.
+///
+/// # Errors
+///
+/// [`BuildFileError`]; an existing file is then unchanged, and the journal has what is worth keeping.
+pub fn build_to_file(
+    study: &Study,
+    path: &Path,
+    format: Format,
+    recording: &Recording,
+    observer: &dyn Observer,
+    tell: &dyn Fn(&Note),
+) -> Result<BuiltFile, BuildFileError> {
+    check_writable(path)?;
+    let books = Books::of_build(study, recording, path)?;
+    books.notes.iter().for_each(tell);
+    let start = Instant::now();
+    let surrogate = match build(Campaign { study, ledger: Some(&books.ledger) }, observer) {
+        Ok(surrogate) => surrogate,
+        Err(error) => {
+            if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
+                tell(&Note::FailuresReused);
+            }
+            books.give_up(is_interruption(&error)).iter().for_each(tell);
+            return Err(error.into());
+        }
+    };
+    let elapsed_seconds = start.elapsed().as_secs_f64();
+    let bytes = encode(&surrogate, format)?;
+    save(path, &bytes)?;
+    let built = BuiltFile {
+        surrogate,
+        bytes: bytes.len() as u64,
+        journal: books.kept_journal().map(Path::to_owned),
+        reused: books.ledger.reused(),
+        failures: books.ledger.failures(),
+        elapsed_seconds,
+    };
+    books.close();
+    Ok(built)
+}

@@ -1,0 +1,154 @@
+//! A question put to a surrogate, and everything that is said in answer.
+
+use super::error::SessionError;
+use crate::evaluation::{
+    Answer, CriticalValues, EvalError, Question, Sampler, Sensitivities, Survey, Surveyed, critical_values_in,
+    sensitivities_in,
+};
+use crate::foundation::{InstructionSet, Interrupted, Observer, is_interruption};
+use crate::shard_file::Part;
+use crate::surrogate::Surrogate;
+use std::time::Instant;
+
+/// Samples of the surrogate whose indices are estimated by pick-freeze: they cost r + 2 evaluations each, and their intervals are
+/// narrow enough.
+const SENSITIVITY_SAMPLES: u64 = 16_384;
+
+/// A surrogate, what was asked of it, and what it answers.
+#[derive(Debug, Clone)]
+pub struct Evaluation<'s> {
+    /// The surrogate.
+    pub surrogate: &'s Surrogate,
+    /// The question.
+    pub question: &'s Question,
+    /// What the samples say: one cell, or one for each point of the sweeps.
+    pub answer: Answer,
+    /// Sensitivities of stability; none of sweeps, and none after an interruption.
+    pub sensitivities: Option<Sensitivities>,
+    /// The critical values of an input, by its number, if asked for.
+    pub critical: Option<(usize, CriticalValues)>,
+    /// Whether this is all that was asked for; false after an interruption.
+    pub is_complete: bool,
+    /// How many parts were put together, if the samples were not evaluated here.
+    pub merged_parts: Option<usize>,
+    /// Wall-clock time of the samples.
+    pub elapsed_seconds: f64,
+}
+
+/// A question that fits a surrogate, ready to be answered whole or in shards.
+#[derive(Debug)]
+pub struct Session<'s> {
+    surrogate: &'s Surrogate,
+    question: &'s Question,
+    survey: Survey<'s>,
+    critical: Option<usize>,
+}
+
+impl<'s> Session<'s> {
+    /// Checks the question against the surrogate. `critical` is the input whose critical values are looked for besides.
+    ///
+    /// # Errors
+    ///
+    /// [`SessionError`] names what does not fit.
+    pub fn new(
+        surrogate: &'s Surrogate,
+        question: &'s Question,
+        critical: Option<&str>,
+        instructions: InstructionSet,
+    ) -> Result<Self, SessionError> {
+        let survey = Survey::new(surrogate, question, instructions)?;
+        if question.sampler != Sampler::MonteCarlo && critical.is_some() {
+            return Err(SessionError::CriticalSampler);
+        }
+        let critical = critical.and_then(|name| surrogate.inputs.names().position(|known| known == name));
+        Ok(Self { surrogate, question, survey, critical })
+    }
+
+    /// Samples the surrogate on the current rayon thread pool, then finds what else was asked for. After an interruption the answer
+    /// has what there was by then.
+    ///
+    /// # Errors
+    ///
+    /// [`EvalError::NotFinite`] names a point; [`EvalError::Interrupted`] if the user asked to stop before there were samples.
+    pub fn run(&self, observer: &dyn Observer) -> Result<Evaluation<'s>, EvalError> {
+        let start = Instant::now();
+        let (Surveyed::Complete(findings) | Surveyed::Interrupted(findings)) =
+            self.survey.run(0..self.survey.division().chunks(), observer)?;
+        let answer = findings.answer(self.survey.division());
+        self.complete(answer, start.elapsed().as_secs_f64(), observer)
+    }
+
+    /// Samples shard `number` of `of`, for [`crate::shard_file::merge`].
+    ///
+    /// # Errors
+    ///
+    /// [`EvalError`]; an interrupted shard is of no use.
+    pub fn run_shard(&self, number: u64, of: u64, observer: &dyn Observer) -> Result<Part, EvalError> {
+        let chunks = self.survey.division().shard(number, of);
+        let Surveyed::Complete(findings) = self.survey.run(chunks, observer)? else { return Err(Interrupted.into()) };
+        Ok(Part { surrogate: self.surrogate.clone(), question: self.question.clone(), findings })
+    }
+
+    /// Adds to the samples' answer what takes all of them.
+    fn complete(
+        &self,
+        answer: Answer,
+        elapsed_seconds: f64,
+        observer: &dyn Observer,
+    ) -> Result<Evaluation<'s>, EvalError> {
+        let Self { surrogate, question, ref survey, critical } = *self;
+        let mut evaluation = Evaluation {
+            surrogate,
+            question,
+            is_complete: answer.is_complete,
+            sensitivities: None,
+            critical: None,
+            merged_parts: None,
+            elapsed_seconds,
+            answer,
+        };
+        if !question.sweeps.is_empty() {
+            return Ok(evaluation);
+        }
+        if evaluation.answer.cells.is_empty() {
+            return Err(Interrupted.into());
+        }
+        let (region, seed) = (&survey.regions().at(0), question.seed);
+        if evaluation.is_complete {
+            let base = question.samples.min(SENSITIVITY_SAMPLES);
+            evaluation.sensitivities = in_time(sensitivities_in(surrogate, region, base, seed, observer))?;
+            evaluation.is_complete = evaluation.sensitivities.is_some();
+        }
+        if let Some(input) = critical.filter(|_| evaluation.is_complete) {
+            let found = in_time(critical_values_in(surrogate, region, input, question.samples, seed, observer))?;
+            evaluation.is_complete = found.is_some();
+            evaluation.critical = found.map(|found| (input, found));
+        }
+        Ok(evaluation)
+    }
+}
+
+/// `None` for an interruption.
+fn in_time<T>(result: Result<T, EvalError>) -> Result<Option<T>, EvalError> {
+    match result {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if is_interruption(&error) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+impl<'s> Evaluation<'s> {
+    /// What the merged parts `whole`, put together from `parts` of them, say: what one evaluation of all samples would have said.
+    ///
+    /// # Errors
+    ///
+    /// [`crate::shard_file::PartError::Gap`] if the first or the last shards are missing; else as [`Session::run`].
+    pub fn of_parts(whole: &'s Part, parts: usize, observer: &dyn Observer) -> Result<Self, SessionError> {
+        let start = Instant::now();
+        whole.check_complete()?;
+        let session = Session::new(&whole.surrogate, &whole.question, None, InstructionSet::best())?;
+        let answer = whole.findings.answer(session.survey.division());
+        let elapsed_seconds = start.elapsed().as_secs_f64();
+        Ok(Self { merged_parts: Some(parts), ..session.complete(answer, elapsed_seconds, observer)? })
+    }
+}

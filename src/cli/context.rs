@@ -1,0 +1,80 @@
+//! What every command is given: where to print, whom to ask whether to stop, and work that several commands begin with.
+
+use super::terminal::Terminal;
+use super::{complain, print};
+use crate::report::EvalReport;
+use anyhow::Context as _;
+use pcc_compile::campaign::{Books, Note, Recording};
+use pcc_compile::compilation::{BuildFileError, BuiltFile, build_to_file};
+use pcc_compile::study::Study;
+use pcc_evaluate::artifact::Format;
+use pcc_evaluate::evaluation::Question;
+use pcc_evaluate::foundation::{InstructionSet, Interrupted};
+use pcc_evaluate::session::Session;
+use pcc_evaluate::surrogate::Surrogate;
+use serde::Serialize;
+use std::fmt::Display;
+use std::path::Path;
+
+/// What every command is given.
+pub(super) struct Context {
+    pub json: bool,
+    pub quiet: bool,
+    pub terminal: Terminal,
+}
+
+impl Context {
+    /// A remark on standard error, beside a report.
+    pub fn say(&self, remark: &str) {
+        if !self.quiet {
+            complain(remark);
+        }
+    }
+
+    /// Prints a report: text for people, or one JSON document.
+    pub fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
+        print(&if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() })
+    }
+
+    /// What the user should know of recorded runs.
+    pub fn note(&self, note: &Note) {
+        self.say(&note.to_string());
+    }
+
+    /// Says what unfinished work has recorded.
+    pub fn say_recorded(&self, books: &Books) {
+        books.recorded().iter().for_each(|note| self.note(note));
+    }
+
+    /// Opens the books of work that runs the model at random points.
+    pub fn books_of_sampling(&self, study: &Study, recording: &Recording) -> anyhow::Result<Books> {
+        let books = Books::of_sampling(study, recording)?;
+        books.notes.iter().for_each(|note| self.note(note));
+        Ok(books)
+    }
+
+    /// Builds the surrogate of `study`, read from `source`, and writes it.
+    pub fn build_to_file(
+        &self,
+        study: &Study,
+        source: &str,
+        path: &Path,
+        format: Format,
+        recording: &Recording,
+    ) -> anyhow::Result<BuiltFile> {
+        let built = build_to_file(study, path, format, recording, &self.terminal, &|note| self.note(note));
+        built.map_err(|error| match error {
+            BuildFileError::Build(error) => anyhow::Error::from(error).context(source.to_owned()),
+            other => other.into(),
+        })
+    }
+
+    /// The plain question: random samples of the whole domain, all of them.
+    pub fn sample(&self, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
+        let question = Question::plain(samples, seed);
+        let session = Session::new(surrogate, &question, None, InstructionSet::best())?;
+        let found = session.run(&self.terminal).with_context(|| surrogate.provenance.study_name.clone())?;
+        let report = EvalReport::of_surrogate(&found).filter(|report| report.complete);
+        Ok(report.ok_or(Interrupted)?)
+    }
+}

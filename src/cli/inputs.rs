@@ -1,0 +1,24 @@
+//! Files that commands read.
+
+use anyhow::{Context as _, bail};
+use pcc_compile::study::Study;
+use pcc_evaluate::artifact::{self, Artifact};
+use pcc_evaluate::shard_file::MARK;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+pub(super) fn read_study(path: &Path) -> anyhow::Result<Study> {
+    Ok(Study::read(path)?)
+}
+
+pub(super) fn read_surrogate(path: &Path) -> anyhow::Result<Artifact> {
+    artifact::read(path).or_else(|error| {
+        let mut start = Vec::new();
+        let read = File::open(path).and_then(|file| file.take(MARK.len() as u64).read_to_end(&mut start));
+        if read.is_ok() && start == MARK.as_bytes() {
+            bail!("{}: is a part of an evaluation; put all its parts together with pcc merge", path.display());
+        }
+        Err(error).with_context(|| path.display().to_string())
+    })
+}

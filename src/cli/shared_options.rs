@@ -1,0 +1,126 @@
+//! Options that several commands have, and how their values are read.
+
+use clap::Args;
+use pcc_compile::campaign::Recording;
+use std::path::PathBuf;
+
+/// Random samples, or given points.
+#[derive(Debug, Args)]
+pub(super) struct SamplingOptions {
+    /// Number of samples, as in 1000000 or 1e6
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, allow_negative_numbers = true)]
+    pub samples: Option<u64>,
+
+    /// Seed of the samples
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
+    /// CSV file of points to evaluate instead of samples
+    #[arg(long, value_name = "IN.csv", requires = "out")]
+    pub points: Option<PathBuf>,
+
+    /// CSV file for the results at these points: the point, re_k and im_k of each mode, max_re, stable
+    #[arg(long, value_name = "OUT.csv", requires = "points", conflicts_with = "samples")]
+    pub out: Option<PathBuf>,
+
+    /// Accept points outside the inputs' domain, where a surrogate knows nothing
+    #[arg(long, requires = "points")]
+    pub extrapolate: bool,
+}
+
+/// Where model runs are recorded.
+#[derive(Debug, Clone, Default, Args)]
+pub(super) struct RecordingOptions {
+    /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside the surrogate;
+    /// others only while a build lasts]
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
+
+    /// Use the runs of this model that the journal has instead of running them again
+    #[arg(long)]
+    pub resume: bool,
+
+    /// Try recorded failures again that the study would skip
+    #[arg(long, requires = "resume")]
+    pub retry_failed: bool,
+
+    /// Record nothing
+    #[arg(long, conflicts_with_all = ["journal", "resume"])]
+    pub no_journal: bool,
+}
+
+impl RecordingOptions {
+    pub fn to_recording(&self) -> Recording {
+        Recording {
+            journal: self.journal.clone(),
+            resumes: self.resume,
+            retries_failures: self.retry_failed,
+            is_off: self.no_journal,
+        }
+    }
+}
+
+/// Where the results of a sweep go beside the terminal.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub(super) struct Pictures {
+    /// CSV file for the points of --sweep: their values, samples, stable proportion, its interval, events
+    #[arg(long, value_name = "FILE.csv")]
+    pub table: Option<PathBuf>,
+
+    /// SVG file for a picture of --sweep: a curve, or a map for two
+    #[arg(long, value_name = "FILE.svg")]
+    pub chart: Option<PathBuf>,
+}
+
+/// Seeds that a study file can hold, too.
+pub(super) fn seed() -> clap::builder::RangedU64ValueParser {
+    clap::value_parser!(u64).range(0..=i64::MAX as u64)
+}
+
+/// A whole number from 1, also written like 1e6 or 1_000_000.
+pub(super) fn sample_count(text: &str) -> Result<u64, String> {
+    /// Whole numbers up to here are exact in double precision.
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    let plain: String = text.chars().filter(|&c| c != '_').collect();
+    let count = plain.parse::<u64>().ok().or_else(|| {
+        let number = plain.parse::<f64>().ok()?;
+        (number.fract() == 0.0 && (0.0..=EXACT).contains(&number)).then_some(number as u64)
+    });
+    match count {
+        Some(0) => Err("use at least 1".to_owned()),
+        Some(count) => Ok(count),
+        None => Err("use a whole number from 1 to 9e15, like 1000000 or 1e6".to_owned()),
+    }
+}
+
+/// As many model runs as are kept in memory.
+pub(super) fn run_count(text: &str) -> Result<u64, String> {
+    const MOST: u64 = 10_000_000;
+    match sample_count(text)? {
+        count if count <= MOST => Ok(count),
+        _ => Err("use at most 10000000: the answers are kept in memory".to_owned()),
+    }
+}
+
+pub(super) fn percentage(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
+        _ => Err("use a number of percent from 0, like 0.5".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sample_counts_are_whole_numbers_from_one() {
+        assert_eq!(sample_count("1e6"), Ok(1_000_000));
+        assert_eq!(sample_count("1_000"), Ok(1000));
+        assert_eq!(sample_count("18446744073709551615"), Ok(u64::MAX));
+        for bad in ["0", "-1", "1.5", "nan", "inf", "1e300", "many", ""] {
+            assert!(sample_count(bad).is_err(), "{bad}");
+        }
+    }
+}
