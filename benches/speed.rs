@@ -6,10 +6,12 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pcc_compile::campaign::Runner;
 use pcc_compile::fitting::design::NestedLatinHypercube;
+use pcc_compile::fitting::fit::FitMethod;
+use pcc_compile::fitting::fit::Smooth;
 use pcc_compile::fitting::fit::minimum_norm::{self, Previous};
 use pcc_compile::fitting::fit::stepwise;
 use pcc_compile::fitting::regression::{BasisTables, Response};
-use pcc_compile::study::{FitMethod, Smooth, Study};
+use pcc_compile::study::Study;
 use pcc_evaluate::artifact::decode;
 use pcc_evaluate::evaluation::monte_carlo;
 use pcc_evaluate::foundation::Silent;

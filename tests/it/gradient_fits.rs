@@ -3,11 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 use pcc_compile::fitting::design::{NestedLatinHypercube, Samples};
 use pcc_compile::fitting::fit::Fitted;
+use pcc_compile::fitting::fit::Smooth;
 use pcc_compile::fitting::fit::minimum_norm::{self, Previous};
 use pcc_compile::fitting::fit::omp::{self, Candidates};
+use pcc_compile::fitting::fit::stepwise::Stepwise;
 use pcc_compile::fitting::fit::stepwise::{self, Outcome};
 use pcc_compile::fitting::regression::{ActiveBasis, BasisTables, Equations, Gradients, Response};
-use pcc_compile::study::{Smooth, Stepwise};
 use pcc_evaluate::foundation::Silent;
 use pcc_evaluate::polynomials::{Family, Hyperbolic, MultiIndex, Recurrence};
 use pcc_evaluate::probability::random::{Purpose, Stream};

@@ -1,8 +1,10 @@
 //! Surrogates by invariants: as exact as promised with a tenth of the runs, whatever the seed.
 
 use crate::support::{build, invariants_study, shipped_study, text};
+use pcc_compile::fitting::fit::FitMethod;
+use pcc_compile::fitting::fit::Smooth;
 use pcc_compile::reference::compare_with_model;
-use pcc_compile::study::{Derivatives, FitMethod, Smooth, Study};
+use pcc_compile::study::{Derivatives, Study};
 use pcc_evaluate::components::OutputKind;
 use pcc_evaluate::foundation::Silent;
 

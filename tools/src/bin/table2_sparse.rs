@@ -4,8 +4,9 @@
 //! r), `initial_r2` (times r²), `q_norm`, `epsilon_forward`, `epsilon_backward`, `max_degree`, `s2_target`, `inputs` (one r only) overrides the
 //! defaults for all r at once: this is how the defaults were chosen.
 
+use pcc_compile::fitting::fit::FitMethod;
 use pcc_compile::reference::compare_with_model;
-use pcc_compile::study::{FitMethod, Study};
+use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use std::time::Instant;
 

@@ -6,16 +6,17 @@
 //! own. Modes are grouped by the spectra at the nodes of all elements; if new nodes change the groups, all elements are projected
 //! anew from the runs at hand, and divided further if the new components ask for it, until the groups stay.
 
+use super::evaluations::groups;
 use super::{BuildError, decision, record};
 use crate::campaign::{Campaign, Run, RunError, Runner};
 use crate::fitting::design::TensorGauss;
 use crate::fitting::fit::gpc::{Projection, project, total_degree};
-use crate::fitting::fit::multi_element::{Division, EQUAL, division};
-use crate::fitting::fit::{Fitted, Stop};
+use crate::fitting::fit::multi_element::{Division, EQUAL, MultiElement, division};
+use crate::fitting::fit::{FitMethod, Fitted, Stop};
 use crate::fitting::regression::ErrorMeasures;
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::Spectrum;
-use crate::study::{FitMethod, MultiElement, Study};
+use crate::study::Study;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::polynomials::{IndexSet, Mesh, MultiIndex, Recurrence};
@@ -38,7 +39,7 @@ pub(super) fn build(
         elements.divide()?;
         // With the spectra of new nodes other modes may come close.
         let outputs = elements.outputs_of_all()?;
-        let is_settled = super::groups(&outputs) == super::groups(&elements.outputs);
+        let is_settled = groups(&outputs) == groups(&elements.outputs);
         elements.outputs = outputs;
         if is_settled {
             return elements.into_surrogate();

@@ -1,9 +1,9 @@
 //! The design points and what the model answered there.
 
 use super::BuildError;
-use crate::campaign::{Campaign, Run, RunError, Runner};
+use crate::campaign::{Campaign, Failure, Run, RunError, Runner};
 use crate::fitting::design::{NestedLatinHypercube, Samples};
-use crate::fitting::regression::Gradients;
+use crate::fitting::regression::{Gradients, Response};
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::{ClusterError, Spectrum, SpectrumError, components as components_of};
 use crate::study::{Derivatives, DesignKind, Study};
@@ -13,10 +13,44 @@ use pcc_evaluate::foundation::Observer;
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
 const SOLVER_ACCURACY: f64 = 1e-13;
 
+/// Fewer runs say nothing of how a component varies.
+const LEAST_RUNS: usize = 2;
+
+/// What a fit needs of a design and the answers there.
+pub(super) struct Level {
+    /// The points whose runs answered, in standardized coordinates.
+    pub samples: Samples,
+    /// What the study's components form, with modes grouped by the spectra found so far.
+    pub outputs: Vec<Output>,
+    /// Per component, one value per point.
+    pub values: Vec<Vec<f64>>,
+    /// Per component its derivatives, if the runs come with any.
+    pub gradients: Option<Vec<Gradients>>,
+    /// Per component, differences up to this size are rounding of the eigenvalue solver.
+    resolutions: Vec<f64>,
+}
+
+impl Level {
+    /// What each component is fitted to.
+    pub fn responses(&self) -> Vec<Response<'_>> {
+        let response = |id: usize| {
+            let gradients = self.gradients.as_ref().map(|all| &all[id]).filter(|one| !one.points.is_empty());
+            Response { gradients, ..Response::of(&self.values[id], self.resolutions[id]) }
+        };
+        (0..self.values.len()).map(response).collect()
+    }
+}
+
+/// The modes of each output.
+pub(super) fn groups(outputs: &[Output]) -> Vec<&[usize]> {
+    outputs.iter().map(|output| output.modes.as_slice()).collect()
+}
+
 /// A growing design with one model run per point. No point is run twice. Points whose runs failed, if the study skips those,
 /// are no samples.
 pub(super) struct Evaluations<'a> {
     study: &'a Study,
+    campaign: Campaign<'a>,
     design: NestedLatinHypercube,
     runner: Runner<'a>,
     /// For each sample, its point of the design.
@@ -32,6 +66,7 @@ impl<'a> Evaluations<'a> {
         }
         Ok(Self {
             study,
+            campaign,
             design: match study.design.kind {
                 DesignKind::NestedLhs => NestedLatinHypercube::new(study.inputs.dimension(), study.seed),
                 // Tensor grids belong to builds by quadrature, which do not come here.
@@ -45,8 +80,25 @@ impl<'a> Evaluations<'a> {
         })
     }
 
-    /// Grows the design and runs the model at its new points.
-    pub fn grow_to(&mut self, size: usize, observer: &dyn Observer) -> Result<(), RunError> {
+    /// Grows the design, runs the model at its new points, and says what a fit needs of all points.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError`] if a run fails that the study does not skip, if too many fail, or if modes cannot be grouped.
+    pub fn grow_to(&mut self, size: usize, observer: &dyn Observer) -> Result<Level, BuildError> {
+        self.run(size, observer)?;
+        self.check_failures()?;
+        let outputs = self.outputs()?;
+        Ok(Level {
+            samples: self.samples(),
+            values: self.components(&outputs)?,
+            gradients: self.gradients(&outputs),
+            resolutions: resolutions(&outputs, &self.runs),
+            outputs,
+        })
+    }
+
+    fn run(&mut self, size: usize, observer: &dyn Observer) -> Result<(), RunError> {
         let old = self.design.len();
         self.design.grow_to(size);
         let standardized = self.points();
@@ -64,6 +116,18 @@ impl<'a> Evaluations<'a> {
         Ok(())
     }
 
+    /// Whether enough runs answered: those that failed leave holes in the design, and more than half of it is no design.
+    fn check_failures(&self) -> Result<(), BuildError> {
+        let (failed, answered) = (self.failed(), self.runs.len());
+        if failed <= answered && answered >= LEAST_RUNS {
+            return Ok(());
+        }
+        let first = self.campaign.ledger.and_then(|ledger| ledger.failures().into_iter().next());
+        let describe = |failure: Failure| (self.study.inputs.describe(&failure.point), failure.cause);
+        let (point, cause) = first.map_or_else(Default::default, describe);
+        Err(BuildError::TooManyFailures { failed, runs: failed + answered, point, cause })
+    }
+
     /// Number of runs that failed.
     pub fn failed(&self) -> usize {
         self.design.len() - self.runs.len()
@@ -76,7 +140,7 @@ impl<'a> Evaluations<'a> {
     }
 
     /// The points whose runs answered, in standardized coordinates.
-    pub fn samples(&self) -> Samples {
+    fn samples(&self) -> Samples {
         let points = self.points();
         if self.failed() == 0 {
             return points;
@@ -91,7 +155,7 @@ impl<'a> Evaluations<'a> {
     }
 
     /// What the study's components form, with modes grouped by the spectra found so far.
-    pub fn outputs(&self) -> Result<Vec<Output>, BuildError> {
+    fn outputs(&self) -> Result<Vec<Output>, BuildError> {
         let spectra: Vec<Spectrum> = self.runs.iter().map(|run| run.spectrum.clone()).collect();
         self.study.spectrum.target.outputs(self.runner.modes(), &spectra).map_err(|cause| {
             let at = where_shown(&cause).unwrap_or(0);
@@ -101,7 +165,7 @@ impl<'a> Evaluations<'a> {
     }
 
     /// The values of each component of `outputs`, by id: one value per point.
-    pub fn components(&self, outputs: &[Output]) -> Result<Vec<Vec<f64>>, BuildError> {
+    fn components(&self, outputs: &[Output]) -> Result<Vec<Vec<f64>>, BuildError> {
         component_values(outputs, &self.runs).map_err(|(i, cause)| {
             let point = self.study.inputs.describe(&self.study.inputs.physical(self.samples().point(i)));
             RunError::Spectrum { point, cause }.into()
@@ -111,7 +175,7 @@ impl<'a> Evaluations<'a> {
     /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come without. Runs in
     /// which an output's modes, or all modes of the study together, cannot be separated from the rest of the spectrum have none
     /// for its components.
-    pub fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
+    fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
         if !self.runner.has_derivatives() {
             return None;
         }
@@ -135,11 +199,6 @@ impl<'a> Evaluations<'a> {
             }
         }
         Some(gradients)
-    }
-
-    /// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver.
-    pub fn resolutions(&self, outputs: &[Output]) -> Vec<f64> {
-        resolutions(outputs, &self.runs)
     }
 }
 

@@ -1,11 +1,12 @@
 //! From fitted components to a surrogate that carries its own history.
 
 use super::components::ComponentResult;
-use super::evaluations::Evaluations;
+use super::evaluations::{Evaluations, Level};
 use crate::fitting::design::NestedLatinHypercube;
-use crate::fitting::fit::{Fitted, Stop};
+use crate::fitting::fit::method::{MethodSetting, Value};
+use crate::fitting::fit::{FitMethod, Fitted, Stop};
 use crate::fitting::regression::Gradients;
-use crate::study::{FitMethod, FullExpansion, MultiElement, Solver, Study};
+use crate::study::Study;
 use pcc_evaluate::components::{Component, Output};
 use pcc_evaluate::polynomials::Mesh;
 use pcc_evaluate::surrogate::{
@@ -51,15 +52,14 @@ pub(super) fn of_elements(
 pub(super) fn surrogate(
     study: &Study,
     evaluations: &Evaluations<'_>,
-    outputs: Vec<Output>,
+    level: &Level,
     fitted: &[ComponentResult],
-    gradients: Option<&[Gradients]>,
-    levels: &[u64],
+    sizes: &[u64],
 ) -> Surrogate {
     let runs = (evaluations.runs().len(), evaluations.failed() as u64);
-    let training = training(study, fitted, gradients, runs, levels.to_vec());
+    let training = training(study, fitted, level.gradients.as_deref(), runs, sizes.to_vec());
     let whole = Mesh::whole(study.inputs.dimension());
-    new(study, whole, outputs, fitted.iter().map(|fit| &fit.result), training)
+    new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training)
 }
 
 fn new<'a>(
@@ -125,7 +125,7 @@ fn training(
     if let Some(tolerance) = study.fit.proportion_tolerance {
         settings.push(number("proportion_tolerance", tolerance));
     }
-    if let FitMethod::Auto(_) = method {
+    if method.profile().chooses {
         let solvers: Vec<String> = fitted.iter().map(|fit| fit.solver.to_owned()).collect();
         settings.push(setting("chosen", SettingValue::Text(summary_of(&solvers))));
     }
@@ -150,32 +150,14 @@ fn training(
 
 /// The settings of a method as they are in a study.
 fn settings_of(method: &FitMethod) -> Vec<Setting> {
-    let mut settings = vec![setting("max_degree", SettingValue::Integer(method.max_degree().into()))];
-    if let FitMethod::Stepwise(stepwise) = method {
-        settings.push(number("q_norm", stepwise.q_norm));
-    }
-    if let Some(s2_target) = method.s2_target() {
-        settings.push(number("s2_target", s2_target));
-    }
-    match method {
-        FitMethod::Gpc(FullExpansion { solver: Solver::Quadrature, .. }) => {
-            settings.push(setting("solver", SettingValue::Text("quadrature".to_owned())));
-        }
-        FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { oversampling }, .. }) => {
-            settings.push(setting("solver", SettingValue::Text("least-squares".to_owned())));
-            settings.push(number("oversampling", *oversampling));
-        }
-        FitMethod::MultiElement(MultiElement { theta_1, theta_2, gamma, elements, .. }) => {
-            settings.extend([number("theta_1", *theta_1), number("theta_2", *theta_2), number("gamma", *gamma)]);
-            settings.push(setting("elements", SettingValue::Integer(*elements as u64)));
-        }
-        _ => {}
-    }
-    if let FitMethod::Stepwise(stepwise) = method {
-        settings.push(number("epsilon_forward", stepwise.epsilon_forward));
-        settings.push(number("epsilon_backward", stepwise.epsilon_backward));
-    }
-    settings
+    let profile = method.profile();
+    let max_degree = setting("max_degree", SettingValue::Integer(profile.max_degree.into()));
+    let others = profile.settings.into_iter().map(|MethodSetting { key, value, .. }| match value {
+        Value::Whole(value) => setting(key, SettingValue::Integer(value as u64)),
+        Value::Number(value) => number(key, value),
+        Value::Word(word) => setting(key, SettingValue::Text(word)),
+    });
+    std::iter::once(max_degree).chain(others).collect()
 }
 
 /// One name if all are equal, else all in the order of the components.

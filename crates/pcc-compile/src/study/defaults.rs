@@ -1,7 +1,10 @@
 //! Defaults of a study: at most one formula in the number of inputs r each.
 
+use super::DesignKind;
 use super::model::Kind;
-use super::{DesignKind, FitMethod};
+use crate::fitting::fit::FitMethod;
+use crate::fitting::fit::gpc::PAPERS_LIMIT;
+use crate::fitting::fit::method::Design;
 use crate::mechanics::spectrum::{Modes, Target};
 
 pub(super) const SEED: u64 = 1;
@@ -24,46 +27,12 @@ pub(super) const WORK_FOLDER: &str = "runs";
 /// Of a program that has not begun to answer otherwise.
 pub(super) const VERSION: &str = "1";
 
-/// The paper's accuracy target and highest degree.
-pub(super) const S2_TARGET: f64 = 0.999;
-pub(super) const MAX_DEGREE: u16 = 15;
-
-pub(super) const Q_NORM: f64 = 0.6;
-pub(super) const EPSILON_FORWARD: f64 = 1e-5;
-pub(super) const EPSILON_BACKWARD: f64 = 1e-5;
-
-/// Points per term of a full expansion by least squares, as the paper asks of a design: N ≥ 2 card(A).
-pub(super) const OVERSAMPLING: f64 = 2.0;
-
-/// Multi-element expansions: the paper's order, and a division of the whole box from a decay rate of η = θ₁² on.
-pub(super) const ELEMENT_DEGREE: u16 = 2;
-pub(super) const THETA_1: f64 = 0.01;
-pub(super) const THETA_2: f64 = 0.5;
-pub(super) const GAMMA: f64 = 0.5;
-pub(super) const ELEMENTS: usize = 100;
-
-/// The number of model runs at which the paper's table stops.
-const PAPERS_LIMIT: f64 = 10_000.0;
-
-/// The paper's highest order of a full expansion.
-const PAPERS_DEGREE: u16 = 6;
-
-/// Degree of a full expansion: by least squares 3; by quadrature the highest up to 6 that takes no more than 10 000 runs, which
-/// gives the orders of the paper's table.
-pub(super) fn full_degree(inputs: usize, is_quadrature: bool) -> u16 {
-    if !is_quadrature {
-        return 3;
-    }
-    let fits = |degree: &u16| f64::from(degree + 1).powi(inputs as i32) <= PAPERS_LIMIT;
-    (1..=PAPERS_DEGREE).rev().find(fits).unwrap_or(1)
-}
-
 /// Where the paper's table stops, ten times as many for multi-element expansions, which spend runs on split parents, too; for
 /// invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000 values, or 3000 values and derivatives.
 pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: &FitMethod) -> usize {
-    match (method, target) {
-        (FitMethod::MultiElement(_), _) => 10 * PAPERS_LIMIT as usize,
-        (FitMethod::Gpc(_), _) | (_, Target::Eigenvalues) => PAPERS_LIMIT as usize,
+    match (method.profile().design, target) {
+        (Design::QuadraturePerElement, _) => 10 * PAPERS_LIMIT as usize,
+        (Design::Quadrature | Design::Oversampled(_), _) | (_, Target::Eigenvalues) => PAPERS_LIMIT as usize,
         _ if derivatives => (3_000 / (1 + inputs)).max(initial(target, inputs, derivatives)),
         _ => 2_000,
     }
@@ -71,8 +40,8 @@ pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: 
 
 /// For invariants: a tenth of a percent of the proportion, about what the sampling of a million points leaves open; with
 /// derivatives a fifth of that costs few runs more. Stepwise regression does not get that far.
-pub(super) fn proportion_tolerance(derivatives: bool, is_stepwise: bool) -> f64 {
-    if derivatives && !is_stepwise { 2e-4 } else { 1e-3 }
+pub(super) fn proportion_tolerance(derivatives: bool, method: &str) -> f64 {
+    if derivatives && method != "stepwise" { 2e-4 } else { 1e-3 }
 }
 
 /// The paper's designs for its own method, spread ones for invariants.

@@ -184,11 +184,21 @@ pub enum StudyError {
         /// Number of model runs.
         runs: String,
     },
-    /// The number of quadrature nodes has no factor.
-    #[error("{place}: belongs to solver = \"least-squares\"; choose that solver or remove the key")]
-    OversamplingOfQuadrature {
+    /// A setting that means nothing with the value of another.
+    #[error("{place}: belongs to {setting}; choose that solver or remove the key")]
+    KeyOfSetting {
         /// Where.
         place: Place,
+        /// The other setting with the value it belongs to.
+        setting: &'static str,
+    },
+    /// A key that no method has.
+    #[error("{place}: is no key of [fit], which are {known}")]
+    UnknownFitKey {
+        /// Where.
+        place: Place,
+        /// The keys there are.
+        known: String,
     },
     /// Derivatives with quadrature.
     #[error(

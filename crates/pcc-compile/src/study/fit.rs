@@ -1,105 +1,48 @@
-//! The fit of a study: which method, and the settings that belong to it.
+//! The fit of a study: which method, the settings that belong to it, and what goes with every method.
 
 use toml::Spanned;
 
+use super::defaults;
 use super::error::StudyError;
-use super::settings::{
-    Derivatives, FitMethod, FitSettings, FullExpansion, ModelSettings, MultiElement, Smooth, Solver, Stepwise,
-};
-use super::validate::Lines;
-use super::{defaults, raw};
+use super::raw::{FitValue, Ordered};
+use super::settings::{Derivatives, FitSettings, ModelSettings};
+use super::validate::{Lines, alternatives};
+use crate::fitting::fit::FitMethod;
+use crate::fitting::fit::method::{Design, Domain, Entry, Given, Key, METHODS, Value};
 use crate::mechanics::spectrum::Target;
-
-/// Degrees above this are of no use for functions that a design can resolve.
-const HIGHEST_DEGREE: i64 = 100;
-
-/// More elements are refused: each has expansions of its own, and finding room for the next looks at all splits.
-const MOST_ELEMENTS: i64 = 10_000;
 
 /// Entries of the matrix of a least-squares fit: two gigabytes.
 const LARGEST_MATRIX: f64 = 2.5e8;
 
-/// A method without its settings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Method {
-    Stepwise,
-    Auto,
-    MinimumNorm,
-    Omp,
-    Gpc,
-    MultiElement,
-}
-
-const METHODS: [(&str, Method); 6] = [
-    ("stepwise", Method::Stepwise),
-    ("auto", Method::Auto),
-    ("minimum-norm", Method::MinimumNorm),
-    ("omp", Method::Omp),
-    ("gpc", Method::Gpc),
-    ("me-gpc", Method::MultiElement),
-];
-
-/// Methods whose settings are found by search or by looking at the error, on a growing design.
-const GROWING: [Method; 4] = [Method::Stepwise, Method::Auto, Method::MinimumNorm, Method::Omp];
-
-/// The values of keys that are given, with the methods they belong to.
-struct Keys<'a> {
-    lines: &'a Lines<'a>,
-    method: Method,
-}
-
-impl Keys<'_> {
-    /// Fails if `value` is given and the method is none of `methods`.
-    fn only<T>(&self, key: &str, value: &Option<Spanned<T>>, methods: &[Method]) -> Result<(), StudyError> {
-        match value {
-            Some(value) if !methods.contains(&self.method) => {
-                let names = METHODS.iter().filter(|(_, method)| methods.contains(method));
-                let methods: Vec<String> = names.map(|(name, _)| format!("\"{name}\"")).collect();
-                let place = self.lines.place(key, value);
-                Err(StudyError::KeyOfMethod { place, methods: methods.join(", ") })
-            }
-            _ => Ok(()),
-        }
-    }
-}
+/// Keys that go with every method.
+const METHOD: &str = "method";
+const DERIVATIVES: &str = "derivatives";
+const TOLERANCE: &str = "proportion_tolerance";
 
 impl Lines<'_> {
     pub(super) fn fit(
         &self,
-        raw: raw::Fit,
+        Ordered(raw): Ordered<FitValue>,
         target: Target,
         inputs: usize,
         model: &ModelSettings,
     ) -> Result<FitSettings, StudyError> {
-        let method = match &raw.method {
-            Some(word) => self.word("fit.method", word, &METHODS)?,
-            None if target == Target::Invariants => Method::Auto,
-            None => Method::Stepwise,
-        };
-        self.keys_fit(&raw, method)?;
-        let derivatives_place = raw.derivatives.as_ref().map(|value| self.place("fit.derivatives", value));
-        let derivatives = match raw.derivatives.clone() {
-            Some(derivatives) => self.derivatives(derivatives, target)?,
+        let find = |name: &str| raw.iter().find(|(key, _)| key == name).map(|(_, value)| value);
+        let entry = self.method(find(METHOD), target)?;
+        let derivatives_place = find(DERIVATIVES).map(|value| self.place("fit.derivatives", value));
+        let derivatives = match find(DERIVATIVES) {
+            Some(value) => self.derivatives(value, target)?,
             None => Derivatives::Auto,
         };
-        let proportion_tolerance = match &raw.proportion_tolerance {
-            Some(value) => {
-                let (resolved, expected) = (|value| (1e-5..=1.0).contains(&value), "a number from 1e-5 to 1");
-                Some(self.number("fit.proportion_tolerance", Some(value.clone()), 1.0, expected, resolved)?)
-            }
-            None => (target == Target::Invariants && GROWING.contains(&method)).then(|| {
+        let proportion_tolerance = match find(TOLERANCE) {
+            Some(value) => Some(self.tolerance(value, entry)?),
+            None => (target == Target::Invariants && entry.grows).then(|| {
                 let with_derivatives = derivatives.are_used(target, model);
-                defaults::proportion_tolerance(with_derivatives, method == Method::Stepwise)
+                defaults::proportion_tolerance(with_derivatives, entry.name)
             }),
         };
-        let method = match method {
-            Method::Stepwise => FitMethod::Stepwise(self.stepwise(raw)?),
-            Method::Auto => FitMethod::Auto(self.smooth(raw)?),
-            Method::MinimumNorm => FitMethod::MinimumNorm(self.smooth(raw)?),
-            Method::Omp => FitMethod::Omp(self.smooth(raw)?),
-            Method::Gpc => FitMethod::Gpc(self.full_expansion(raw, inputs)?),
-            Method::MultiElement => FitMethod::MultiElement(self.multi_element(raw)?),
-        };
+        let settings = raw.iter().filter(|(key, _)| ![METHOD, DERIVATIVES, TOLERANCE].contains(&key.as_str()));
+        let method = self.settings(entry, settings, inputs)?;
         match derivatives_place {
             Some(place) if derivatives == Derivatives::Always && !model.has_derivatives() => {
                 Err(StudyError::NoDerivatives { place })
@@ -115,106 +58,131 @@ impl Lines<'_> {
         }
     }
 
-    /// Every key that is given belongs to the method.
-    fn keys_fit(&self, raw: &raw::Fit, method: Method) -> Result<(), StudyError> {
-        let keys = Keys { lines: self, method };
-        for (key, value) in [
-            ("fit.q_norm", &raw.q_norm),
-            ("fit.epsilon_forward", &raw.epsilon_forward),
-            ("fit.epsilon_backward", &raw.epsilon_backward),
-        ] {
-            keys.only(key, value, &[Method::Stepwise])?;
-        }
-        keys.only("fit.s2_target", &raw.s2_target, &GROWING)?;
-        keys.only("fit.proportion_tolerance", &raw.proportion_tolerance, &GROWING)?;
-        keys.only("fit.solver", &raw.solver, &[Method::Gpc])?;
-        keys.only("fit.oversampling", &raw.oversampling, &[Method::Gpc])?;
-        for (key, value) in [("fit.theta_1", &raw.theta_1), ("fit.theta_2", &raw.theta_2), ("fit.gamma", &raw.gamma)] {
-            keys.only(key, value, &[Method::MultiElement])?;
-        }
-        keys.only("fit.elements", &raw.elements, &[Method::MultiElement])
-    }
-
-    fn derivatives(&self, raw: Spanned<raw::Derivatives>, target: Target) -> Result<Derivatives, StudyError> {
-        let place = self.place("fit.derivatives", &raw);
-        match raw.into_inner() {
-            raw::Derivatives::Flag(true) if target == Target::Eigenvalues => {
-                Err(StudyError::DerivativesOfEigenvalues { place })
-            }
-            raw::Derivatives::Flag(true) => Ok(Derivatives::Always),
-            raw::Derivatives::Flag(false) => Ok(Derivatives::Never),
-            raw::Derivatives::Word(word) if word == "auto" => Ok(Derivatives::Auto),
-            raw::Derivatives::Word(word) => {
-                let expected = "\"auto\", true or false".to_owned();
-                Err(StudyError::OutOfRange { place, found: format!("{word:?}"), expected })
-            }
-        }
-    }
-
-    fn max_degree(&self, value: Option<Spanned<i64>>, default: u16) -> Result<u16, StudyError> {
-        match value {
-            Some(value) => Ok(self.integer("fit.max_degree", value, 1..=HIGHEST_DEGREE)? as u16),
-            None => Ok(default),
-        }
-    }
-
-    fn share(&self, key: &str, value: Option<Spanned<f64>>, default: f64) -> Result<f64, StudyError> {
-        self.number(key, value, default, "a number above 0 and at most 1", |value| value > 0.0 && value <= 1.0)
-    }
-
-    fn smooth(&self, raw: raw::Fit) -> Result<Smooth, StudyError> {
-        Ok(Smooth {
-            max_degree: self.max_degree(raw.max_degree, defaults::MAX_DEGREE)?,
-            s2_target: self.share("fit.s2_target", raw.s2_target, defaults::S2_TARGET)?,
+    /// The paper's own method for eigenvalues, the better of two for invariants, unless the study names one.
+    fn method(&self, value: Option<&Spanned<FitValue>>, target: Target) -> Result<&'static Entry, StudyError> {
+        let default = if target == Target::Invariants { "auto" } else { "stepwise" };
+        let word = match value {
+            None => default,
+            Some(value) => match value.get_ref() {
+                FitValue::Text(word) => word,
+                _ => return Err(self.wrong_value("fit.method", value, "the name of a method in quotes".to_owned())),
+            },
+        };
+        METHODS.iter().find(|entry| entry.name == word).ok_or_else(|| {
+            let names: Vec<String> = METHODS.iter().map(|entry| format!("{:?}", entry.name)).collect();
+            let place = value.map_or_else(|| self.nowhere("fit.method"), |value| self.place("fit.method", value));
+            StudyError::UnknownWord { place, found: word.to_owned(), expected: alternatives(&names) }
         })
     }
 
-    fn stepwise(&self, raw: raw::Fit) -> Result<Stepwise, StudyError> {
-        let epsilon = |key, value, default| {
-            self.number(key, value, default, "a number from 0 to below 1", |value| (0.0..1.0).contains(&value))
+    fn tolerance(&self, value: &Spanned<FitValue>, entry: &Entry) -> Result<f64, StudyError> {
+        const KEY: Key = Key {
+            name: TOLERANCE,
+            domain: Domain::Number {
+                expected: "a number from 1e-5 to 1",
+                holds: |value| value >= 1e-5 && value <= 1.0,
+            },
         };
-        Ok(Stepwise {
-            max_degree: self.max_degree(raw.max_degree, defaults::MAX_DEGREE)?,
-            s2_target: self.share("fit.s2_target", raw.s2_target, defaults::S2_TARGET)?,
-            q_norm: self.share("fit.q_norm", raw.q_norm, defaults::Q_NORM)?,
-            epsilon_forward: epsilon("fit.epsilon_forward", raw.epsilon_forward, defaults::EPSILON_FORWARD)?,
-            epsilon_backward: epsilon("fit.epsilon_backward", raw.epsilon_backward, defaults::EPSILON_BACKWARD)?,
+        if !entry.grows {
+            return Err(self.key_of_method(&KEY, value, |entry| entry.grows));
+        }
+        match self.within(&KEY, value)? {
+            Value::Number(tolerance) => Ok(tolerance),
+            _ => Err(self.wrong_value("fit.proportion_tolerance", value, "a number".to_owned())),
+        }
+    }
+
+    fn derivatives(&self, value: &Spanned<FitValue>, target: Target) -> Result<Derivatives, StudyError> {
+        match value.get_ref() {
+            FitValue::Flag(true) if target == Target::Eigenvalues => {
+                Err(StudyError::DerivativesOfEigenvalues { place: self.place("fit.derivatives", value) })
+            }
+            FitValue::Flag(true) => Ok(Derivatives::Always),
+            FitValue::Flag(false) => Ok(Derivatives::Never),
+            FitValue::Text(word) if word == "auto" => Ok(Derivatives::Auto),
+            _ => Err(self.wrong_value("fit.derivatives", value, "\"auto\", true or false".to_owned())),
+        }
+    }
+
+    /// The method with its settings: every key that is given belongs to it, every value to its key.
+    fn settings<'k>(
+        &self,
+        entry: &Entry,
+        raw: impl Iterator<Item = &'k (String, Spanned<FitValue>)> + Clone,
+        inputs: usize,
+    ) -> Result<FitMethod, StudyError> {
+        let mut given = Given::default();
+        for (name, value) in raw.clone() {
+            let Some(key) = METHODS.iter().flat_map(|entry| entry.keys).find(|key| key.name == name) else {
+                return Err(self.unknown_key(name, value));
+            };
+            if !entry.keys.iter().any(|own| own.name == key.name) {
+                return Err(self.key_of_method(key, value, |entry| entry.keys.iter().any(|own| own.name == key.name)));
+            }
+            given.0.push((key.name, self.within(key, value)?));
+        }
+        (entry.read)(&given, inputs).map_err(|meaningless| {
+            let value = raw.clone().find(|(name, _)| name == meaningless.key).map(|(_, value)| value);
+            let key = format!("fit.{}", meaningless.key);
+            let place = value.map_or_else(|| self.nowhere(&key), |value| self.place(key.clone(), value));
+            StudyError::KeyOfSetting { place, setting: meaningless.belongs_to }
         })
     }
 
-    fn full_expansion(&self, raw: raw::Fit, inputs: usize) -> Result<FullExpansion, StudyError> {
-        let is_quadrature = match &raw.solver {
-            Some(word) => self.word("fit.solver", word, &[("quadrature", true), ("least-squares", false)])?,
-            None => true,
-        };
-        let solver = match (is_quadrature, raw.oversampling) {
-            (true, Some(value)) => {
-                return Err(StudyError::OversamplingOfQuadrature { place: self.place("fit.oversampling", &value) });
+    /// The value, if the key may have it.
+    fn within(&self, key: &Key, value: &Spanned<FitValue>) -> Result<Value, StudyError> {
+        let full = format!("fit.{}", key.name);
+        match (key.domain, value.get_ref()) {
+            (Domain::Whole { least, most }, FitValue::Whole(number)) if (least..=most).contains(number) => {
+                Ok(Value::Whole(*number))
             }
-            (true, None) => Solver::Quadrature,
-            (false, value) => {
-                let (expected, is_more) = ("a number from 1 to 100", |value: f64| (1.0..=100.0).contains(&value));
-                let oversampling = self.number("fit.oversampling", value, defaults::OVERSAMPLING, expected, is_more)?;
-                Solver::LeastSquares { oversampling }
+            (Domain::Whole { least, most }, _) => {
+                Err(self.wrong_value(&full, value, format!("a whole number from {least} to {most}")))
             }
-        };
-        let default_degree = defaults::full_degree(inputs, is_quadrature);
-        Ok(FullExpansion { max_degree: self.max_degree(raw.max_degree, default_degree)?, solver })
+            (Domain::Number { holds, .. }, FitValue::Number(number)) if holds(*number) => Ok(Value::Number(*number)),
+            (Domain::Number { holds, .. }, FitValue::Whole(number)) if holds(*number as f64) => {
+                Ok(Value::Number(*number as f64))
+            }
+            (Domain::Number { expected, .. }, FitValue::Whole(number)) => {
+                let found = format!("{:?}", *number as f64);
+                Err(StudyError::OutOfRange { place: self.place(full, value), found, expected: expected.to_owned() })
+            }
+            (Domain::Number { expected, .. }, _) => Err(self.wrong_value(&full, value, expected.to_owned())),
+            (Domain::Word(words), FitValue::Text(word)) if words.contains(&word.as_str()) => {
+                Ok(Value::Word(word.clone()))
+            }
+            (Domain::Word(words), found) => {
+                let names: Vec<String> = words.iter().map(|word| format!("{word:?}")).collect();
+                match found {
+                    FitValue::Text(word) => Err(StudyError::UnknownWord {
+                        place: self.place(full, value),
+                        found: word.clone(),
+                        expected: alternatives(&names),
+                    }),
+                    _ => Err(self.wrong_value(&full, value, alternatives(&names))),
+                }
+            }
+        }
     }
 
-    fn multi_element(&self, raw: raw::Fit) -> Result<MultiElement, StudyError> {
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-        let elements = match raw.elements {
-            Some(value) => self.integer("fit.elements", value, 1..=MOST_ELEMENTS)? as usize,
-            None => defaults::ELEMENTS,
-        };
-        Ok(MultiElement {
-            max_degree: self.max_degree(raw.max_degree, defaults::ELEMENT_DEGREE)?,
-            theta_1: self.number("fit.theta_1", raw.theta_1, defaults::THETA_1, "0 or more", not_negative)?,
-            theta_2: self.share("fit.theta_2", raw.theta_2, defaults::THETA_2)?,
-            gamma: self.share("fit.gamma", raw.gamma, defaults::GAMMA)?,
-            elements,
-        })
+    fn wrong_value(&self, key: &str, value: &Spanned<FitValue>, expected: String) -> StudyError {
+        StudyError::OutOfRange { place: self.place(key, value), found: value.get_ref().to_string(), expected }
+    }
+
+    fn key_of_method(&self, key: &Key, value: &Spanned<FitValue>, has: impl Fn(&Entry) -> bool) -> StudyError {
+        let names = METHODS.iter().filter(|entry| has(entry)).map(|entry| format!("{:?}", entry.name));
+        let place = self.place(format!("fit.{}", key.name), value);
+        StudyError::KeyOfMethod { place, methods: names.collect::<Vec<_>>().join(", ") }
+    }
+
+    fn unknown_key(&self, name: &str, value: &Spanned<FitValue>) -> StudyError {
+        let mut known = vec![METHOD, DERIVATIVES, TOLERANCE];
+        for key in METHODS.iter().flat_map(|entry| entry.keys) {
+            if !known.contains(&key.name) {
+                known.push(key.name);
+            }
+        }
+        StudyError::UnknownFitKey { place: self.place(format!("fit.{name}"), value), known: known.join(", ") }
     }
 
     /// The number of model runs that a method without a growing design takes, of one element for several; `None` for the others.
@@ -227,12 +195,12 @@ impl Lines<'_> {
     ) -> Result<Option<usize>, StudyError> {
         let degree = fit.method.max_degree();
         let equations_per_run = if derivatives { 1 + inputs } else { 1 };
-        let runs = match &fit.method {
-            FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { oversampling }, .. }) => {
+        let runs = match fit.method.profile().design {
+            Design::Oversampled(oversampling) => {
                 (oversampling * terms(inputs, degree) / equations_per_run as f64).ceil().max(2.0)
             }
-            FitMethod::Gpc(_) | FitMethod::MultiElement(_) => f64::from(degree + 1).powi(inputs as i32),
-            _ => return Ok(None),
+            Design::Quadrature | Design::QuadraturePerElement => f64::from(degree + 1).powi(inputs as i32),
+            Design::Growing => return Ok(None),
         };
         if runs > maximum as f64 {
             return Err(StudyError::TooManyRuns { degree, inputs, runs: whole(runs), maximum });

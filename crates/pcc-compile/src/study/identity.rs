@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{FitMethod, FullExpansion, ModelSettings, MultiElement, Solver, Study, Table};
+use super::{ModelSettings, Study, Table};
+use crate::fitting::fit::method::Value;
 use crate::mechanics::model::CLUTCH_PARAMETERS;
 use crate::mechanics::model::matrices::{Description, Layout, Term};
 use crate::mechanics::spectrum::{Modes, Target};
@@ -17,26 +18,14 @@ pub(super) fn study_hash(study: &Study) -> String {
     let Study { name, seed, design, fit, .. } = study;
     let _ = writeln!(text, "name {name}\nseed {seed}");
     let _ = writeln!(text, "design {} {} {} {}", design.kind.name(), design.initial, design.step, design.maximum);
-    let method = &fit.method;
-    let _ = write!(text, "fit {} {}", method.name(), method.max_degree());
-    if let FitMethod::Stepwise(stepwise) = method {
-        let _ = write!(text, " {:?}", stepwise.q_norm);
-    }
-    match method {
-        FitMethod::Gpc(FullExpansion { solver: Solver::Quadrature, .. }) => text.push_str(" quadrature"),
-        FitMethod::Gpc(FullExpansion { solver: Solver::LeastSquares { oversampling }, .. }) => {
-            let _ = write!(text, " least-squares {oversampling:?}");
-        }
-        FitMethod::MultiElement(MultiElement { theta_1, theta_2, gamma, elements, .. }) => {
-            let _ = write!(text, " {theta_1:?} {theta_2:?} {gamma:?} {elements}");
-        }
-        _ => {}
-    }
-    if let Some(s2_target) = method.s2_target() {
-        let _ = write!(text, " {s2_target:?}");
-    }
-    if let FitMethod::Stepwise(stepwise) = method {
-        let _ = write!(text, " {:?} {:?}", stepwise.epsilon_forward, stepwise.epsilon_backward);
+    let profile = fit.method.profile();
+    let _ = write!(text, "fit {} {}", profile.name, profile.max_degree);
+    for setting in profile.settings {
+        let _ = match setting.value {
+            Value::Whole(value) => write!(text, " {value}"),
+            Value::Number(value) => write!(text, " {value:?}"),
+            Value::Word(word) => write!(text, " {word}"),
+        };
     }
     text.push('\n');
     if study.spectrum.target != Target::Eigenvalues {

@@ -16,8 +16,7 @@ mod validate;
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
 pub use settings::{
-    Command, Derivatives, DesignKind, DesignSettings, FitMethod, FitSettings, FullExpansion, ModelSettings,
-    MultiElement, Smooth, Solver, SpectrumSettings, Stepwise, Table,
+    Command, Derivatives, DesignKind, DesignSettings, FitSettings, ModelSettings, SpectrumSettings, Table,
 };
 
 use crate::mechanics::model::matrices::Matrices;

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::print_model::{self, unit_of};
-use super::{DesignKind, FitMethod, FullExpansion, MultiElement, STUDY_FORMAT, Solver, Study};
+use super::{DesignKind, STUDY_FORMAT, Study};
+use crate::fitting::fit::method::{Design, MethodSetting, Value};
 use crate::mechanics::spectrum::{Modes, Target};
 
 /// Column at which explanations start.
@@ -37,10 +38,12 @@ pub(super) fn study(study: &Study) -> String {
     };
     file.line("kind", format!("{:?}", study.design.kind.name()), kind);
     let runs = study.design.initial;
-    match study.fit.method {
-        FitMethod::Gpc(_) => file.comment(&format!("takes {runs} model runs, by the degree")),
-        FitMethod::MultiElement(_) => file.comment(&format!("takes {runs} model runs per element, by the degree")),
-        _ => {
+    match study.fit.method.profile().design {
+        Design::Oversampled(_) | Design::Quadrature => {
+            file.comment(&format!("takes {runs} model runs, by the degree"));
+        }
+        Design::QuadraturePerElement => file.comment(&format!("takes {runs} model runs per element, by the degree")),
+        Design::Growing => {
             file.line("initial", runs, "model runs of the first level");
             file.line("step", study.design.step, "model runs added by each enrichment");
         }
@@ -54,31 +57,16 @@ pub(super) fn study(study: &Study) -> String {
 
 fn fit(file: &mut Printer, study: &Study) {
     let fit = &study.fit;
-    let (explanation, degree) = match fit.method {
-        FitMethod::Stepwise(_) => ("the paper's algorithm", "p_max"),
-        FitMethod::Omp(_) => ("orthogonal matching pursuit", "of the candidates"),
-        FitMethod::MinimumNorm(_) => ("weighted minimum norm", "in each input"),
-        FitMethod::Auto(_) => ("the better of minimum-norm and omp", "in each input"),
-        FitMethod::Gpc(_) => ("full expansion", "total degree p"),
-        FitMethod::MultiElement(_) => ("full expansions on elements", "total degree p in each element"),
-    };
-    file.line("method", format!("{:?}", fit.method.name()), explanation);
-    file.line("max_degree", fit.method.max_degree(), degree);
-    if let FitMethod::Stepwise(stepwise) = &fit.method {
-        file.line("q_norm", float(stepwise.q_norm), "q of the hyperbolic index sets, above 0 and at most 1");
-    }
-    if let Some(s2_target) = fit.method.s2_target() {
-        file.line("s2_target", float(s2_target), "leave-one-out S² that is accurate enough");
-    }
-    match &fit.method {
-        FitMethod::Gpc(settings) => full_expansion(file, settings),
-        FitMethod::MultiElement(settings) => multi_element(file, settings),
-        _ => {}
-    }
-    if let FitMethod::Stepwise(stepwise) = &fit.method {
-        let (forward, backward) = (float(stepwise.epsilon_forward), float(stepwise.epsilon_backward));
-        file.line("epsilon_forward", forward, "ε₁: a term is kept if it raises R² by this");
-        file.line("epsilon_backward", backward, "ε₂: a term is dropped if that lowers R² by less");
+    let profile = fit.method.profile();
+    file.line("method", format!("{:?}", profile.name), profile.explanation);
+    file.line("max_degree", profile.max_degree, profile.degree);
+    for MethodSetting { key, value, explanation } in profile.settings {
+        let value = match value {
+            Value::Whole(value) => value.to_string(),
+            Value::Number(value) => float(value),
+            Value::Word(word) => format!("{word:?}"),
+        };
+        file.line(key, value, explanation);
     }
     if study.spectrum.target != Target::Eigenvalues && fit.method.can_use_derivatives() {
         let used =
@@ -91,27 +79,6 @@ fn fit(file: &mut Printer, study: &Study) {
         None if fit.method.has_fixed_design() => {}
         None => file.line("# proportion_tolerance", "0.001", &format!("{tolerance}; not used unless written")),
     }
-}
-
-fn full_expansion(file: &mut Printer, settings: &FullExpansion) {
-    match settings.solver {
-        Solver::Quadrature => file.line("solver", "\"quadrature\"", "(p + 1)^r model runs; or \"least-squares\""),
-        Solver::LeastSquares { oversampling } => {
-            file.line("solver", "\"least-squares\"", "or \"quadrature\"");
-            file.line("oversampling", float(oversampling), "equations per term");
-        }
-    }
-}
-
-fn multi_element(file: &mut Printer, settings: &MultiElement) {
-    file.line("theta_1", float(settings.theta_1), "θ₁: elements with η^γ × probability from here on are divided");
-    file.line(
-        "theta_2",
-        float(settings.theta_2),
-        "θ₂: along inputs with this part of the largest share of the highest order",
-    );
-    file.line("gamma", float(settings.gamma), "γ: exponent of the decay rate η");
-    file.line("elements", settings.elements, "at most");
 }
 
 fn inputs(file: &mut Printer, study: &Study) {

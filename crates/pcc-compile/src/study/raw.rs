@@ -23,7 +23,7 @@ pub(super) struct Study {
     #[serde(default)]
     pub design: Design,
     #[serde(default)]
-    pub fit: Fit,
+    pub fit: Ordered<FitValue>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -111,30 +111,25 @@ pub(super) struct Design {
     pub maximum: Option<Spanned<i64>>,
 }
 
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Fit {
-    pub method: Option<Spanned<String>>,
-    pub max_degree: Option<Spanned<i64>>,
-    pub q_norm: Option<Spanned<f64>>,
-    pub s2_target: Option<Spanned<f64>>,
-    pub epsilon_forward: Option<Spanned<f64>>,
-    pub epsilon_backward: Option<Spanned<f64>>,
-    pub proportion_tolerance: Option<Spanned<f64>>,
-    pub derivatives: Option<Spanned<Derivatives>>,
-    pub solver: Option<Spanned<String>>,
-    pub oversampling: Option<Spanned<f64>>,
-    pub theta_1: Option<Spanned<f64>>,
-    pub theta_2: Option<Spanned<f64>>,
-    pub gamma: Option<Spanned<f64>>,
-    pub elements: Option<Spanned<i64>>,
+/// A value of `[fit]`, whose keys are those of the methods.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "expected a number, a text in quotes, true or false")]
+pub(super) enum FitValue {
+    Flag(bool),
+    Whole(i64),
+    Number(f64),
+    Text(String),
 }
 
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged, expecting = "derivatives must be \"auto\", true or false")]
-pub(super) enum Derivatives {
-    Flag(bool),
-    Word(String),
+impl fmt::Display for FitValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(value) => write!(f, "{value}"),
+            Self::Whole(value) => write!(f, "{value}"),
+            Self::Number(value) => write!(f, "{value:?}"),
+            Self::Text(value) => write!(f, "{value:?}"),
+        }
+    }
 }
 
 /// A table whose order matters: the order of inputs is the order of the standardized variables.

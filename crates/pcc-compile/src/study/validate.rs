@@ -7,7 +7,7 @@ use toml::Spanned;
 
 use super::error::{Place, StudyError};
 use super::model::Kind;
-use super::settings::{DesignKind, DesignSettings, FitMethod, FitSettings, SpectrumSettings};
+use super::settings::{DesignKind, DesignSettings, FitSettings, SpectrumSettings};
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::mechanics::model::Parameter;
 use crate::mechanics::spectrum::{Modes, Target};
@@ -56,8 +56,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
         return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
     }
     let equations = design.maximum.saturating_mul(1 + dimension);
-    let is_least_squares = matches!(fit.method, FitMethod::Stepwise(_) | FitMethod::Gpc(_));
-    if derivatives && !is_least_squares && equations > MOST_EQUATIONS {
+    if derivatives && !fit.method.profile().is_least_squares && equations > MOST_EQUATIONS {
         let (inputs, maximum, most) = (dimension, design.maximum, MOST_EQUATIONS);
         return Err(StudyError::TooManyEquations { inputs, maximum, equations, most, fitting: most / (1 + inputs) });
     }
@@ -65,7 +64,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
 }
 
 /// `"a", "b" or "c"`.
-fn alternatives(names: &[String]) -> String {
+pub(super) fn alternatives(names: &[String]) -> String {
     match names {
         [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
         _ => names.concat(),
@@ -81,6 +80,11 @@ impl Lines<'_> {
     pub(super) fn place<T>(&self, key: impl Into<String>, value: &Spanned<T>) -> Place {
         let before = &self.text.as_bytes()[..value.span().start.min(self.text.len())];
         Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
+    }
+
+    /// The place of a key that is not in the file.
+    pub(super) fn nowhere(&self, key: &str) -> Place {
+        Place { key: key.to_owned(), line: 1 }
     }
 
     pub(super) fn out_of_range<T: Debug>(

@@ -4,11 +4,12 @@
 //! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by folds,
 //! because its leave-one-out error does not see the selection of terms.
 
+use super::method::{ComponentFit, Entry, FitMethod, FitSize, MAX_DEGREE, Profile, S2_TARGET, Smooth, Solver};
 use super::omp::Candidates;
 use super::{Fitted, minimum_norm, omp};
 use crate::fitting::regression::{BasisTables, Response};
-use crate::study::Smooth;
 use pcc_evaluate::foundation::{Interrupted, Observer};
+use pcc_evaluate::polynomials::IndexSetError;
 
 /// Pursuit is given up for larger designs once its mean square error is so many times that of the other fit.
 const HOPELESS: f64 = 4.0;
@@ -32,6 +33,42 @@ impl Previous {
     }
 }
 
+/// The method in the list.
+pub(super) const METHOD: Entry = Entry {
+    name: "auto",
+    keys: &[&MAX_DEGREE, &S2_TARGET],
+    grows: true,
+    read: |given, _| Ok(FitMethod::Auto(Smooth::read(given))),
+};
+
+pub(super) fn profile(settings: &Smooth) -> Profile {
+    Profile { chooses: true, ..settings.profile(METHOD.name, "the better of minimum-norm and omp", "in each input") }
+}
+
+/// The method with its candidates.
+struct Ready<'s> {
+    settings: &'s Smooth,
+    candidates: Candidates,
+}
+
+pub(super) fn ready(settings: &Smooth, size: FitSize) -> Result<impl Solver, IndexSetError> {
+    let FitSize { inputs, maximum, derivatives } = size;
+    Ok(Ready { settings, candidates: Candidates::new(inputs, settings.max_degree, maximum, derivatives)? })
+}
+
+impl Solver for Ready<'_> {
+    fn fit(
+        &self,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &Previous,
+        _: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<ComponentFit>, Interrupted> {
+        fit(tables, response, &self.candidates, self.settings, previous, observer).map(Some)
+    }
+}
+
 /// Fits one component: `response.values[i]` belongs to point i of `tables`. Returns the fit, the name of its method, and
 /// what the next design starts from.
 ///
@@ -45,11 +82,11 @@ pub fn fit(
     settings: &Smooth,
     previous: &Previous,
     observer: &dyn Observer,
-) -> Result<(Fitted, &'static str, Previous), Interrupted> {
+) -> Result<ComponentFit, Interrupted> {
     let (smooth, minimum_norm) = minimum_norm::fit(tables, response, settings, &previous.minimum_norm, observer)?;
     let mut previous = Previous { minimum_norm, ..*previous };
     if !previous.tries_pursuit || smooth.errors.is_none() {
-        return Ok((smooth, "minimum-norm", previous));
+        return Ok((smooth, minimum_norm::METHOD.name, previous));
     }
     let pursued = omp::fit(tables, response, candidates, settings, observer)?;
     let error = |fitted: &Fitted| 1.0 - fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY);
@@ -57,8 +94,8 @@ pub fn fit(
     let is_hopeless = error(&pursued) >= HOPELESS * error(&smooth) && is_enough;
     previous.tries_pursuit = !is_hopeless;
     if error(&pursued) < error(&smooth) {
-        Ok((pursued, "omp", previous))
+        Ok((pursued, omp::METHOD.name, previous))
     } else {
-        Ok((smooth, "minimum-norm", previous))
+        Ok((smooth, minimum_norm::METHOD.name, previous))
     }
 }

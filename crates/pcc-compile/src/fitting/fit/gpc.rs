@@ -10,6 +10,10 @@
 //! * **least squares** ([`least_squares`]) on the points of a design, equations 7 and 8, with derivatives if there are any. The
 //!   weight of the equations of derivatives is the one with the best leave-one-out S².
 
+use super::method::{
+    ComponentFit, Design, Domain, Entry, FitMethod, FitSize, Given, Key, MAX_DEGREE, Meaningless, MethodSetting,
+    Previous, Profile, Solver as ReadySolver, Value, number_setting,
+};
 use super::{Fitted, Stop, WEIGHTS};
 use crate::fitting::design::TensorGauss;
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
@@ -24,6 +28,119 @@ const BLOCK_VALUES: usize = 1 << 21;
 
 /// Blocks whose sums are held in memory together.
 const BLOCKS_IN_FLIGHT: usize = 16;
+
+const SOLVER: Key = Key { name: "solver", domain: Domain::Word(&["quadrature", "least-squares"]) };
+const OVERSAMPLING: Key = Key {
+    name: "oversampling",
+    domain: Domain::Number { expected: "a number from 1 to 100", holds: |value| value >= 1.0 && value <= 100.0 },
+};
+
+/// Points per term of a full expansion by least squares, as the paper asks of a design: N ≥ 2 card(A).
+const DEFAULT_OVERSAMPLING: f64 = 2.0;
+
+/// Degree by least squares.
+const LEAST_SQUARES_DEGREE: u16 = 3;
+
+/// The number of model runs at which the paper's table stops.
+pub const PAPERS_LIMIT: f64 = 10_000.0;
+
+/// The paper's highest order of a full expansion.
+const PAPERS_DEGREE: u16 = 6;
+
+/// The method in the list.
+pub(super) const METHOD: Entry =
+    Entry { name: "gpc", keys: &[&MAX_DEGREE, &SOLVER, &OVERSAMPLING], grows: false, read };
+
+/// How the coefficients of a full expansion are found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Solver {
+    /// Projection by a tensor Gauss rule with p + 1 nodes per input.
+    Quadrature,
+    /// Least squares on a Latin hypercube.
+    LeastSquares {
+        /// Equations per term, at least 1: values, and derivatives if there are any.
+        oversampling: f64,
+    },
+}
+
+/// Settings of a full expansion of total degree (section 3.1 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+pub struct FullExpansion {
+    /// p, at least 1.
+    pub max_degree: u16,
+    /// How its coefficients are found.
+    pub solver: Solver,
+}
+
+fn read(given: &Given, inputs: usize) -> Result<FitMethod, Meaningless> {
+    let oversampling = given.number(&OVERSAMPLING);
+    let (solver, default_degree) = match given.word(&SOLVER) {
+        Some("least-squares") => {
+            let oversampling = oversampling.unwrap_or(DEFAULT_OVERSAMPLING);
+            (Solver::LeastSquares { oversampling }, LEAST_SQUARES_DEGREE)
+        }
+        _ if oversampling.is_some() => {
+            return Err(Meaningless { key: OVERSAMPLING.name, belongs_to: "solver = \"least-squares\"" });
+        }
+        _ => (Solver::Quadrature, quadrature_degree(inputs)),
+    };
+    Ok(FitMethod::Gpc(FullExpansion { max_degree: given.degree(default_degree), solver }))
+}
+
+/// The highest degree up to 6 that takes no more than 10 000 runs, which gives the orders of the paper's table.
+fn quadrature_degree(inputs: usize) -> u16 {
+    let fits = |degree: &u16| f64::from(degree + 1).powi(inputs as i32) <= PAPERS_LIMIT;
+    (1..=PAPERS_DEGREE).rev().find(fits).unwrap_or(1)
+}
+
+impl FullExpansion {
+    pub(super) fn profile(&self) -> Profile {
+        let solver = |name: &str, explanation| MethodSetting {
+            key: SOLVER.name,
+            value: Value::Word(name.to_owned()),
+            explanation,
+        };
+        let (design, settings) = match self.solver {
+            Solver::Quadrature => {
+                (Design::Quadrature, vec![solver("quadrature", "(p + 1)^r model runs; or \"least-squares\"")])
+            }
+            Solver::LeastSquares { oversampling } => {
+                let oversampled = number_setting(&OVERSAMPLING, oversampling, "equations per term");
+                (Design::Oversampled(oversampling), vec![solver("least-squares", "or \"quadrature\""), oversampled])
+            }
+        };
+        Profile {
+            name: METHOD.name,
+            explanation: "full expansion",
+            degree: "total degree p",
+            max_degree: self.max_degree,
+            settings,
+            design,
+            is_least_squares: true,
+            chooses: false,
+        }
+    }
+}
+
+/// Least squares on all terms.
+struct Ready(IndexSet);
+
+pub(super) fn ready(degree: u16, size: FitSize) -> Result<impl ReadySolver, IndexSetError> {
+    Ok(Ready(total_degree(size.inputs, degree)?))
+}
+
+impl ReadySolver for Ready {
+    fn fit(
+        &self,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &Previous,
+        _: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<ComponentFit>, Interrupted> {
+        Ok(Some((least_squares(tables, response, &self.0, observer)?, METHOD.name, previous.clone())))
+    }
+}
 
 /// {α : |α| ≤ p} for `inputs` variables.
 ///

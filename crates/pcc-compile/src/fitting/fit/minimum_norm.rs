@@ -23,11 +23,11 @@
 //!
 //! Finally terms too small to matter beside that error are dropped: the expansion is sparse.
 
+use super::method::{self, ComponentFit, Entry, FitMethod, MAX_DEGREE, Profile, S2_TARGET, Smooth, Solver};
 use super::prior_search::{Found, Search, most_runs};
 use super::regularized::Regularized;
 use super::{BlindResiduals, Fitted, Stop};
 use crate::fitting::regression::{BasisTables, Equations, ErrorMeasures, Response};
-use crate::study::Smooth;
 use nalgebra::{DMatrix, DVector};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{IndexSet, MultiIndex};
@@ -54,6 +54,39 @@ const ENOUGH_BLIND: usize = 40;
 
 /// Refinements of the coefficients: each gains about five digits of the sixteen.
 const REFINEMENTS: usize = 3;
+
+/// The method in the list.
+pub(super) const METHOD: Entry = Entry {
+    name: "minimum-norm",
+    keys: &[&MAX_DEGREE, &S2_TARGET],
+    grows: true,
+    read: |given, _| Ok(FitMethod::MinimumNorm(Smooth::read(given))),
+};
+
+pub(super) fn profile(settings: &Smooth) -> Profile {
+    settings.profile(METHOD.name, "weighted minimum norm", "in each input")
+}
+
+/// The method, which takes all terms.
+struct Ready<'s>(&'s Smooth);
+
+pub(super) fn ready(settings: &Smooth) -> impl Solver {
+    Ready(settings)
+}
+
+impl Solver for Ready<'_> {
+    fn fit(
+        &self,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &method::Previous,
+        _: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<ComponentFit>, Interrupted> {
+        let (fitted, minimum_norm) = fit(tables, response, self.0, &previous.minimum_norm, observer)?;
+        Ok(Some((fitted, METHOD.name, method::Previous { minimum_norm, ..*previous })))
+    }
+}
 
 /// What the fit of a component on one design leaves for the next larger one.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,7 +123,7 @@ impl Previous {
 /// use pcc_evaluate::polynomials::Family;
 /// use pcc_evaluate::foundation::Silent;
 /// use pcc_compile::fitting::regression::{BasisTables, Response};
-/// use pcc_compile::study::Smooth;
+/// use pcc_compile::fitting::fit::Smooth;
 ///
 /// let mut design = NestedLatinHypercube::new(2, 1);
 /// design.grow_to(30);

@@ -4,6 +4,7 @@ pub mod auto;
 mod covariance;
 mod cross_validation;
 pub mod gpc;
+pub mod method;
 pub mod minimum_norm;
 pub mod multi_element;
 pub mod omp;
@@ -13,6 +14,7 @@ mod pursuit_path;
 mod regularized;
 pub mod stepwise;
 
+pub use method::{FitMethod, Smooth};
 pub use prior::Prior;
 
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};

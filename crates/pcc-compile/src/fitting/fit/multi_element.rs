@@ -20,7 +20,7 @@
 //! element is halved along fewer inputs, those with the largest r_j.
 
 use super::gpc::Projection;
-use crate::study::MultiElement;
+use super::method::{Design, Domain, Entry, FitMethod, Key, MAX_DEGREE, MethodSetting, Profile, Value, number_setting};
 use pcc_evaluate::polynomials::IndexSet;
 
 /// Squares of coefficients up to this share of those of the highest order are rounding of the quadrature.
@@ -29,6 +29,77 @@ const ROUNDING: f64 = 1e-24;
 /// Shares and urgencies closer than this are equal but for rounding: the input or element that comes first is taken, on every
 /// processor.
 pub const EQUAL: f64 = 1e-9;
+
+/// More elements are refused: each has expansions of its own, and finding room for the next looks at all splits.
+const MOST_ELEMENTS: i64 = 10_000;
+
+const THETA_1: Key = Key {
+    name: "theta_1",
+    domain: Domain::Number { expected: "0 or more", holds: |value| value >= 0.0 && value.is_finite() },
+};
+const THETA_2: Key = Key::share("theta_2");
+const GAMMA: Key = Key::share("gamma");
+const ELEMENTS: Key = Key { name: "elements", domain: Domain::Whole { least: 1, most: MOST_ELEMENTS } };
+
+/// The paper's order, and a division of the whole box from a decay rate of η = θ₁² on.
+const DEFAULT_DEGREE: u16 = 2;
+const DEFAULT_THETA_1: f64 = 0.01;
+const DEFAULT_THETA_2: f64 = 0.5;
+const DEFAULT_GAMMA: f64 = 0.5;
+const DEFAULT_ELEMENTS: usize = 100;
+
+/// The method in the list.
+pub(super) const METHOD: Entry = Entry {
+    name: "me-gpc",
+    keys: &[&MAX_DEGREE, &THETA_1, &THETA_2, &GAMMA, &ELEMENTS],
+    grows: false,
+    read: |given, _| {
+        Ok(FitMethod::MultiElement(MultiElement {
+            max_degree: given.degree(DEFAULT_DEGREE),
+            theta_1: given.number(&THETA_1).unwrap_or(DEFAULT_THETA_1),
+            theta_2: given.number(&THETA_2).unwrap_or(DEFAULT_THETA_2),
+            gamma: given.number(&GAMMA).unwrap_or(DEFAULT_GAMMA),
+            elements: given.whole(&ELEMENTS).map_or(DEFAULT_ELEMENTS, |elements| elements as usize),
+        }))
+    },
+};
+
+/// Settings of the multi-element expansion (section 3.2 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+pub struct MultiElement {
+    /// p of the expansion in each element, at least 1.
+    pub max_degree: u16,
+    /// θ₁: elements whose decay rate η, to the power γ and times their probability, is at least this are divided; not negative.
+    pub theta_1: f64,
+    /// θ₂: inputs whose share of the highest order is at least this part of the largest share are halved; in (0, 1\].
+    pub theta_2: f64,
+    /// γ, in (0, 1\].
+    pub gamma: f64,
+    /// Elements at most.
+    pub elements: usize,
+}
+
+impl MultiElement {
+    pub(super) fn profile(&self) -> Profile {
+        let along = "θ₂: along inputs with this part of the largest share of the highest order";
+        let elements = Value::Whole(self.elements as i64);
+        Profile {
+            name: METHOD.name,
+            explanation: "full expansions on elements",
+            degree: "total degree p in each element",
+            max_degree: self.max_degree,
+            settings: vec![
+                number_setting(&THETA_1, self.theta_1, "θ₁: elements with η^γ × probability from here on are divided"),
+                number_setting(&THETA_2, self.theta_2, along),
+                number_setting(&GAMMA, self.gamma, "γ: exponent of the decay rate η"),
+                MethodSetting { key: ELEMENTS.name, value: elements, explanation: "at most" },
+            ],
+            design: Design::QuadraturePerElement,
+            is_least_squares: true,
+            chooses: false,
+        }
+    }
+}
 
 /// Why and how an element would be divided.
 #[derive(Debug, Clone, PartialEq)]

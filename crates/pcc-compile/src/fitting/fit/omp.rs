@@ -17,10 +17,12 @@
 //! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
 
 use super::cross_validation::{CrossValidation, Problem};
+use super::method::{
+    ComponentFit, Entry, FitMethod, FitSize, MAX_DEGREE, Previous, Profile, S2_TARGET, Smooth, Solver,
+};
 use super::pursuit_path::Path;
 use super::{BlindResiduals, Fitted, Stop, WEIGHTS};
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
-use crate::study::Smooth;
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{Hyperbolic, IndexSetError, MultiIndex};
 
@@ -41,6 +43,42 @@ const FEW_CANDIDATES: usize = 100;
 
 /// Mean square error relative to the variance at which nothing but rounding is left to explain.
 const EXACT: f64 = 1e-26;
+
+/// The method in the list.
+pub(super) const METHOD: Entry = Entry {
+    name: "omp",
+    keys: &[&MAX_DEGREE, &S2_TARGET],
+    grows: true,
+    read: |given, _| Ok(FitMethod::Omp(Smooth::read(given))),
+};
+
+pub(super) fn profile(settings: &Smooth) -> Profile {
+    settings.profile(METHOD.name, "orthogonal matching pursuit", "of the candidates")
+}
+
+/// The method with its candidates.
+struct Ready<'s> {
+    settings: &'s Smooth,
+    candidates: Candidates,
+}
+
+pub(super) fn ready(settings: &Smooth, size: FitSize) -> Result<impl Solver, IndexSetError> {
+    let FitSize { inputs, maximum, derivatives } = size;
+    Ok(Ready { settings, candidates: Candidates::new(inputs, settings.max_degree, maximum, derivatives)? })
+}
+
+impl Solver for Ready<'_> {
+    fn fit(
+        &self,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &Previous,
+        _: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<ComponentFit>, Interrupted> {
+        Ok(Some((fit(tables, response, &self.candidates, self.settings, observer)?, METHOD.name, previous.clone())))
+    }
+}
 
 /// The candidates of every norm, degree by degree.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,7 +137,7 @@ fn most_candidates(runs: usize, derivatives: usize) -> usize {
 /// use pcc_evaluate::polynomials::Family;
 /// use pcc_evaluate::foundation::Silent;
 /// use pcc_compile::fitting::regression::{BasisTables, Response};
-/// use pcc_compile::study::Smooth;
+/// use pcc_compile::fitting::fit::Smooth;
 ///
 /// let mut design = NestedLatinHypercube::new(3, 1);
 /// design.grow_to(40);

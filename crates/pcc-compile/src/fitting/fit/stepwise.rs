@@ -20,14 +20,108 @@
 
 use std::collections::HashSet;
 
+use super::method::{
+    ComponentFit, DEFAULT_DEGREE, DEFAULT_S2, Design, Domain, Entry, FitMethod, FitSize, Key, MAX_DEGREE, Previous,
+    Profile, S2_TARGET, Solver, number_setting, s2_setting,
+};
 use super::{Fitted, Stop, WEIGHTS};
 use crate::fitting::regression::{ActiveBasis, BasisTables, Response};
-use crate::study::Stepwise;
 use pcc_evaluate::foundation::{Interrupted, Observer};
-use pcc_evaluate::polynomials::MultiIndex;
+use pcc_evaluate::polynomials::{Hyperbolic, IndexSetError, MultiIndex};
 
 /// Mean leverage of a value beyond which there are too few points: P/N for N < 2 card(A) (step 4 of the paper).
 const LARGEST_LEVERAGE: f64 = 0.5;
+
+const Q_NORM: Key = Key::share("q_norm");
+const EPSILON_FORWARD: Key = Key { name: "epsilon_forward", domain: EPSILON };
+const EPSILON_BACKWARD: Key = Key { name: "epsilon_backward", domain: EPSILON };
+const EPSILON: Domain =
+    Domain::Number { expected: "a number from 0 to below 1", holds: |value| value >= 0.0 && value < 1.0 };
+
+/// Chosen so that table 2 of the paper is reproduced for all numbers of inputs.
+const DEFAULT_Q: f64 = 0.6;
+const DEFAULT_EPSILON: f64 = 1e-5;
+
+/// The method in the list.
+pub(super) const METHOD: Entry = Entry {
+    name: "stepwise",
+    keys: &[&MAX_DEGREE, &Q_NORM, &S2_TARGET, &EPSILON_FORWARD, &EPSILON_BACKWARD],
+    grows: true,
+    read: |given, _| {
+        Ok(FitMethod::Stepwise(Stepwise {
+            max_degree: given.degree(DEFAULT_DEGREE),
+            q_norm: given.number(&Q_NORM).unwrap_or(DEFAULT_Q),
+            s2_target: given.number(&S2_TARGET).unwrap_or(DEFAULT_S2),
+            epsilon_forward: given.number(&EPSILON_FORWARD).unwrap_or(DEFAULT_EPSILON),
+            epsilon_backward: given.number(&EPSILON_BACKWARD).unwrap_or(DEFAULT_EPSILON),
+        }))
+    },
+};
+
+/// Settings of the stepwise construction of a sparse basis (section 3.3.3 of the paper).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stepwise {
+    /// p_max, at least 1.
+    pub max_degree: u16,
+    /// q of the index sets, in (0, 1].
+    pub q_norm: f64,
+    /// S² at which a component is accurate enough, in (0, 1\].
+    pub s2_target: f64,
+    /// ε₁: the rise of R² from which a candidate is kept, not negative.
+    pub epsilon_forward: f64,
+    /// ε₂: the fall of R² below which a term is dropped, not negative.
+    pub epsilon_backward: f64,
+}
+
+impl Stepwise {
+    pub(super) fn profile(&self) -> Profile {
+        let backward = "ε₂: a term is dropped if that lowers R² by less";
+        Profile {
+            name: METHOD.name,
+            explanation: "the paper's algorithm",
+            degree: "p_max",
+            max_degree: self.max_degree,
+            settings: vec![
+                number_setting(&Q_NORM, self.q_norm, "q of the hyperbolic index sets, above 0 and at most 1"),
+                s2_setting(self.s2_target),
+                number_setting(&EPSILON_FORWARD, self.epsilon_forward, "ε₁: a term is kept if it raises R² by this"),
+                number_setting(&EPSILON_BACKWARD, self.epsilon_backward, backward),
+            ],
+            design: Design::Growing,
+            is_least_squares: true,
+            chooses: false,
+        }
+    }
+}
+
+/// The method with the candidates of every degree.
+struct Ready<'s> {
+    settings: &'s Stepwise,
+    shells: Vec<Vec<MultiIndex>>,
+}
+
+pub(super) fn ready(settings: &Stepwise, size: FitSize) -> Result<impl Solver, IndexSetError> {
+    let hyperbolic = Hyperbolic { inputs: size.inputs, q_norm: settings.q_norm };
+    Ok(Ready { settings, shells: hyperbolic.shells(settings.max_degree)? })
+}
+
+impl Solver for Ready<'_> {
+    fn fit(
+        &self,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &Previous,
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<ComponentFit>, Interrupted> {
+        let fitted = match fit(tables, response, &self.shells, self.settings, observer)? {
+            Outcome::Fitted(fitted) => fitted,
+            Outcome::TooFewSamples { .. } if can_grow => return Ok(None),
+            Outcome::TooFewSamples { indices, degree } => settle(tables, response, &indices, degree, observer)?,
+        };
+        Ok(Some((fitted, METHOD.name, previous.clone())))
+    }
+}
 
 /// What came of a fit on one design.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +155,7 @@ pub enum Outcome {
 /// use pcc_evaluate::polynomials::{Hyperbolic, Family};
 /// use pcc_evaluate::foundation::Silent;
 /// use pcc_compile::fitting::regression::{BasisTables, Response};
-/// use pcc_compile::study::Stepwise;
+/// use pcc_compile::fitting::fit::stepwise::Stepwise;
 ///
 /// let settings = Stepwise {
 ///     max_degree: 8, q_norm: 1.0, s2_target: 0.9999, epsilon_forward: 1e-6, epsilon_backward: 1e-6,
@@ -194,22 +288,22 @@ mod tests {
 
     const DEGREE: u16 = 8;
 
-    struct Problem {
+    struct FitSize {
         samples: Samples,
         tables: BasisTables,
         shells: Vec<Vec<MultiIndex>>,
     }
 
-    fn problem(points: usize, q_norm: f64) -> Problem {
+    fn problem(points: usize, q_norm: f64) -> FitSize {
         let mut design = NestedLatinHypercube::new(2, 3);
         design.grow_to(points);
         let samples = design.samples(|_, u| 2.0 * u - 1.0);
         let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); 2];
         let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
-        Problem { samples, tables, shells: Hyperbolic { inputs: 2, q_norm }.shells(DEGREE).unwrap() }
+        FitSize { samples, tables, shells: Hyperbolic { inputs: 2, q_norm }.shells(DEGREE).unwrap() }
     }
 
-    impl Problem {
+    impl FitSize {
         /// Values of an expansion with these terms.
         fn values(&self, terms: &[([u16; 2], f64)]) -> Vec<f64> {
             let indices: Vec<MultiIndex> = terms.iter().map(|(alpha, _)| MultiIndex::new(alpha.to_vec())).collect();

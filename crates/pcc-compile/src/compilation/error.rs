@@ -1,0 +1,49 @@
+//! Why a build gave no surrogate.
+
+use crate::campaign::RunError;
+use crate::mechanics::model::ModelError;
+use crate::mechanics::spectrum::ClusterError;
+use pcc_evaluate::foundation::Interrupted;
+use pcc_evaluate::polynomials::IndexSetError;
+use thiserror::Error;
+
+/// Why a build gave no surrogate.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum BuildError {
+    /// The model could not be set up.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A model run failed; it is not replaced by a guess.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// Modes could not be grouped.
+    #[error("spectrum.modes: {cause}; found at {point}")]
+    Clusters {
+        /// Where: the inputs with their values.
+        point: String,
+        /// Why.
+        #[source]
+        cause: ClusterError,
+    },
+    /// The study asks for derivatives, which the model does not have.
+    #[error("fit.derivatives: the model has no derivatives; remove the key or set it to \"auto\" or false")]
+    NoDerivatives,
+    /// The study skips runs that fail, but there are too many of them.
+    #[error("{failed} of {runs} model runs failed, more than half; the first at {point}: {cause}")]
+    TooManyFailures {
+        /// Runs that failed.
+        failed: usize,
+        /// All runs.
+        runs: usize,
+        /// Where the first failed: the inputs with their values.
+        point: String,
+        /// Why it did.
+        cause: String,
+    },
+    /// There are too many candidate terms.
+    #[error(transparent)]
+    IndexSet(#[from] IndexSetError),
+    /// The user asked to stop.
+    #[error("{0}")]
+    Interrupted(#[from] Interrupted),
+}
