@@ -1,6 +1,6 @@
 //! What an evaluation costs, part by part, beside what the processor can do.
 //!
-//! `cargo bench --bench evaluation` measures the processor's fused multiply-add peak and every part of an evaluation of the
+//! `cargo bench -p pcc-tools --bench evaluation` measures the processor's fused multiply-add peak and every part of an evaluation of the
 //! shipped surrogate with eight inputs, in turn and several times, and prints the best of each: other work on the machine can only
 //! slow a part down. Floating-point operations are those that the plan counts.
 

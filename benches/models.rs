@@ -1,6 +1,6 @@
 //! What models of the user's cost: matrices beside the built-in clutch, finite elements, programs.
 //!
-//! `cargo bench --bench models` prints one line per figure; ratios are of times taken in turn, in the same process.
+//! `cargo bench -p pcc-tools --bench models` prints one line per figure; ratios are of times taken in turn, in the same process.
 
 use pcc_compile::campaign::journal::Journal;
 use pcc_compile::campaign::{Campaign, Ledger, Runner};
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn shipped(name: &str) -> Result<Study, Box<dyn Error>> {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("surrogates");
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("surrogates");
     Ok(Study::from_toml_in(&fs::read_to_string(folder.join(format!("{name}.toml")))?, &folder)?)
 }
 

@@ -1,6 +1,6 @@
 //! Estimated against true errors of the stability proportion, over inputs, seeds and sizes.
 //!
-//! `cargo run --release --example decision_estimate -- [POINTS]` builds every level of every design separately, with
+//! `cargo run --release -p pcc-tools --bin decision_estimate -- [POINTS]` builds every level of every design separately, with
 //! derivatives and with values alone, and compares it with the model on POINTS points, 100 000 by default. One point is 0.005 % of
 //! the clutch's proportion; ratios of errors below a few of them are noise and left out of the summary.
 
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn ratios(more: &str, levels: usize, points: u64) -> Result<Vec<f64>, Box<dyn Error>> {
     let mut ratios = Vec::new();
     for inputs in [3, 5, 8] {
-        let path = format!("{}/surrogates/clutch-r{inputs}.toml", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/../surrogates/clutch-r{inputs}.toml", env!("CARGO_MANIFEST_DIR"));
         let mut study = Study::from_toml(&(std::fs::read_to_string(path)? + more))?;
         study.fit.proportion_tolerance = Some(1e-5);
         for (seed, level) in SEEDS.flat_map(|seed| (2..=levels).map(move |level| (seed, level))) {

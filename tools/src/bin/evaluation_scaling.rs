@@ -1,6 +1,6 @@
 //! Time and peak memory of whole evaluations, from a million samples to a billion (Linux).
 //!
-//! `cargo build --release && cargo run --release --example evaluation_scaling -- [LARGEST]` runs `pcc eval` on the shipped surrogate with
+//! `cargo build --release && cargo run --release -p pcc-tools --bin evaluation_scaling -- [LARGEST]` runs `pcc eval` on the shipped surrogate with
 //! eight inputs as a user would, start to end, by default up to 10⁹ samples: about two minutes on two cores.
 
 use pcc::report::{Align, Table};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-const SURROGATE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/surrogates/clutch-r8.pcc");
+const SURROGATE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../surrogates/clutch-r8.pcc");
 
 /// Samples of the run that start-up is measured by: from here on nothing but the number of samples grows (Sobol' indices take as
 /// many).
@@ -43,7 +43,7 @@ fn evaluate(pcc: &Path, samples: u64) -> Result<(f64, u64), Box<dyn std::error::
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let largest: f64 = std::env::args().nth(1).map_or(Ok(1e9), |argument| argument.parse())?;
-    let pcc = std::env::current_exe()?.with_file_name("").join("../pcc").canonicalize()?;
+    let pcc = std::env::current_exe()?.with_file_name("pcc").canonicalize()?;
     let best = |samples: u64, repetitions: usize| -> Result<(f64, u64), Box<dyn std::error::Error>> {
         let mut best = (f64::INFINITY, 0);
         for _ in 0..repetitions {

@@ -1,6 +1,6 @@
 //! Writes a surrogate whose names try to be markup, to check that pages show them as text.
 //!
-//! `cargo run --release --example hostile_names -- OUT.json`
+//! `cargo run --release -p pcc-tools --bin hostile_names -- OUT.json`
 
 use pcc_evaluate::artifact::{Format, encode, read};
 use pcc_evaluate::foundation::save;
@@ -12,7 +12,7 @@ const HOSTILE: &str = "</script><img src=x onerror=alert(1)>";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = std::env::args().nth(1).ok_or("name the file to write")?;
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("surrogates/clutch-r2.pcc");
+    let shipped = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("surrogates/clutch-r2.pcc");
     let mut surrogate = read(&shipped)?.surrogate;
     surrogate.provenance.study_name = HOSTILE.to_owned();
     let mut inputs = surrogate.inputs.inputs().to_vec();

@@ -1,6 +1,6 @@
 //! Surrogates by invariants against the model on the same points, over the seeds 1 to 5, sizes chosen by the tool.
 //!
-//! `cargo run --release --example invariants_table -- [POINTS] [INPUTS…]` prints one row per number of inputs and seed: with
+//! `cargo run --release -p pcc-tools --bin invariants_table -- [POINTS] [INPUTS…]` prints one row per number of inputs and seed: with
 //! derivatives, with values alone, and for 8 inputs with other tolerances and by the paper's method with ten times the runs.
 
 use pcc_compile::reference::compare_with_model;
@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// A shipped study with `more` at its end.
 fn study(name: &str, more: &str) -> Result<Study, Box<dyn Error>> {
-    let path = format!("{}/surrogates/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../surrogates/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     Ok(Study::from_toml(&(std::fs::read_to_string(path)? + more))?)
 }
 

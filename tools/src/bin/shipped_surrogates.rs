@@ -1,6 +1,6 @@
 //! Rebuilds what is shipped: `schemas/` and, beside every study in `surrogates/`, its `.pcc` and `.json`.
 //!
-//! `cargo run --release --example shipped_surrogates` writes them; with `-- --check` it compares instead, and fails if the
+//! `cargo run --release -p pcc-tools --bin shipped_surrogates` writes them; with `-- --check` it compares instead, and fails if the
 //! schema differs, if a surrogate has other index sets or coefficients beyond the tolerance between machines, or if
 //! the two forms of a surrogate differ.
 
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let check = std::env::args().any(|argument| argument == "--check");
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let schema_path = root.join("schemas/surrogate.v1.schema.json");
     if !check {
         save(&schema_path, schema().as_bytes())?;

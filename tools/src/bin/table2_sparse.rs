@@ -1,6 +1,6 @@
 //! The sparse rows of the paper's table 2: every r from 3 to 8 over the seeds 1 to 5, against the model on the same points.
 //!
-//! `cargo run --release --example table2_sparse -- [POINTS] [KEY=VALUE …]` with the keys `initial`, `step` (both times
+//! `cargo run --release -p pcc-tools --bin table2_sparse -- [POINTS] [KEY=VALUE …]` with the keys `initial`, `step` (both times
 //! r), `initial_r2` (times r²), `q_norm`, `epsilon_forward`, `epsilon_backward`, `max_degree`, `s2_target`, `inputs` (one r only) overrides the
 //! defaults for all r at once: this is how the defaults were chosen.
 
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if overrides.iter().any(|(key, value)| key == "inputs" && *value as usize != inputs) {
             continue;
         }
-        let path = format!("{}/surrogates/clutch-r{inputs}-eigenvalues.toml", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/../surrogates/clutch-r{inputs}-eigenvalues.toml", env!("CARGO_MANIFEST_DIR"));
         let mut study = Study::from_toml(&std::fs::read_to_string(path)?)?;
         let FitMethod::Stepwise(fit) = &mut study.fit.method else { return Err("not the paper's method".into()) };
         for (key, value) in &overrides {

@@ -22,7 +22,7 @@
 //!
 //! Residuals of points that chose the settings of a fit flatter it, so rms and mean use blind residuals
 //! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the quantiles, residuals
-//! that are not blind are doubled. `examples/decision_estimate.rs` compares estimate and truth over seeds and sizes: the
+//! that are not blind are doubled. `tools/src/bin/decision_estimate.rs` compares estimate and truth over seeds and sizes: the
 //! truth is a half to three quarters of the estimate in the median and seldom more than three times it. Where errors all point the same way, the
 //! assumption of independence fails and it can be more.
 

@@ -10,6 +10,7 @@ mod error;
 mod from_v1;
 mod json;
 mod meaning;
+#[cfg(feature = "schema")]
 mod schema;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,7 @@ pub mod version;
 
 pub use error::{LossError, ReadError, SaveError, WriteError};
 
+#[cfg(feature = "schema")]
 pub use schema::schema;
 
 use crate::foundation::save;

@@ -3,13 +3,15 @@
 //! bincode is positional, so a published struct never gains, loses or moves a field, and enums grow at the end only.
 //! New features are new sections, new section versions or new kinds.
 
+#[cfg(feature = "schema")]
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A whole surrogate file: the sections by name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[schemars(title = "pcc surrogate, format 1")]
+#[cfg_attr(feature = "schema", schemars(title = "pcc surrogate, format 1"))]
 pub struct Document {
     /// Version of the format.
     pub format: FormatVersion,
@@ -35,7 +37,8 @@ pub struct Document {
 }
 
 /// Version of the format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FormatVersion {
     /// Changes when older readers could misunderstand a file.
@@ -45,7 +48,8 @@ pub struct FormatVersion {
 }
 
 /// Section 1: where the surrogate comes from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Meta {
     /// Version of pcc that built it.
@@ -61,7 +65,8 @@ pub struct Meta {
 }
 
 /// Section 2: the uncertain inputs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Inputs {
     /// One per standardized variable, in order.
@@ -71,7 +76,8 @@ pub struct Inputs {
 }
 
 /// One input.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Input {
     /// Name.
@@ -89,7 +95,8 @@ pub struct Input {
 }
 
 /// Distribution of a physical variable.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Distribution {
     /// Uniform on [lower, upper].
@@ -102,7 +109,8 @@ pub enum Distribution {
 }
 
 /// Map from the physical to the standardized variable.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Transform {
     /// ξ = (x − center)/half_width.
@@ -115,7 +123,8 @@ pub enum Transform {
 }
 
 /// Family of orthonormal polynomials.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Family {
     /// Orthonormal under the uniform density on [−1, 1].
@@ -123,7 +132,8 @@ pub enum Family {
 }
 
 /// φ_0 = 1, b_{k+1} φ_{k+1} = (ξ − a_k) φ_k − b_k φ_{k−1}.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Recurrence {
     /// a_0, a_1, ….
@@ -133,7 +143,8 @@ pub struct Recurrence {
 }
 
 /// An interval.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Bounds {
     /// Lower end.
@@ -143,7 +154,8 @@ pub struct Bounds {
 }
 
 /// Dependence of the inputs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Dependence {
     /// All inputs are independent.
@@ -151,7 +163,8 @@ pub enum Dependence {
 }
 
 /// Section 3: what the components form.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Outputs {
     /// The outputs in order.
@@ -159,7 +172,8 @@ pub struct Outputs {
 }
 
 /// A group of components.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Output {
     /// How its components are combined.
@@ -175,7 +189,8 @@ pub struct Output {
 }
 
 /// How components are combined.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum OutputKind {
     /// Two components: Re λ and Im λ of one mode.
@@ -188,7 +203,8 @@ pub enum OutputKind {
 }
 
 /// One expanded quantity: value = center + scale × expansion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Component {
     /// Id, from 0, unique among all outputs.
@@ -202,7 +218,8 @@ pub struct Component {
 }
 
 /// Section 4: the parts of the input space, each with its own expansions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Elements {
     /// The elements; exactly one for a global expansion.
@@ -212,7 +229,8 @@ pub struct Elements {
 }
 
 /// A box in standardized coordinates.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Element {
     /// Probability of the element.
@@ -222,7 +240,8 @@ pub struct Element {
 }
 
 /// One side of an element: local variable = (ξ − center)/half_width.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Side {
     /// Bounds of ξ; absent where the standardized variable is unbounded.
@@ -234,7 +253,8 @@ pub struct Side {
 }
 
 /// A node of the split tree: points with ξ_input < at go below, others above.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Split {
     /// Position of the input, from 0.
@@ -248,7 +268,8 @@ pub struct Split {
 }
 
 /// A child in the split tree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Branch {
     /// An element, by its position.
@@ -258,7 +279,8 @@ pub enum Branch {
 }
 
 /// Section 5: index sets and coefficients.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Expansions {
     /// Pool of index sets: each a list of multi-indices, by total degree, then larger degrees of earlier inputs first.
@@ -268,7 +290,8 @@ pub struct Expansions {
 }
 
 /// Σ c_α ψ_α with ψ_α = Π φ_{α_j}(ζ_j) in the local variables ζ of the element.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Expansion {
     /// Position of the element.
@@ -294,7 +317,8 @@ pub struct Expansion {
 }
 
 /// What a leave-one-out error leaves out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LeaveOut {
     /// One value.
@@ -304,7 +328,8 @@ pub enum LeaveOut {
 }
 
 /// Why the search for an expansion ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Stop {
     /// S² reached its target.
@@ -324,7 +349,8 @@ pub enum Stop {
 }
 
 /// Section 6: how the surrogate was trained.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Training {
     /// Fitting method.
@@ -342,7 +368,8 @@ pub struct Training {
 }
 
 /// One setting.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Setting {
     /// Its key in the study.
@@ -352,7 +379,8 @@ pub struct Setting {
 }
 
 /// Value of a setting.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SettingValue {
     /// A whole number.
@@ -366,7 +394,8 @@ pub enum SettingValue {
 }
 
 /// Numbers of model runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Counts {
     /// Runs whose values entered the fit.
@@ -382,7 +411,8 @@ pub struct Counts {
 }
 
 /// Section 7: what is known of the error where stability is decided.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Decision {
     /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s; empty if undetermined.
@@ -392,7 +422,8 @@ pub struct Decision {
 }
 
 /// A quantile.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Quantile {
     /// Probability to be undercut.
@@ -402,7 +433,8 @@ pub struct Quantile {
 }
 
 /// Section 8: points with the values an evaluator must find.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct SelfTest {
     /// Points in physical coordinates.
@@ -416,7 +448,8 @@ pub struct SelfTest {
 }
 
 /// Section 9: verified bounds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Certificates {
     /// In the order in which they were added; never empty.
@@ -424,7 +457,8 @@ pub struct Certificates {
 }
 
 /// A verified bound on the stability proportion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Certificate {
     /// Seed of its points.
