@@ -1,8 +1,8 @@
 //! What an evaluation costs, part by part, beside what the processor can do.
 //!
-//! `cargo bench -p pcc-tools --bench evaluation` measures the processor's fused multiply-add peak and every part of an evaluation of the
-//! shipped surrogate with eight inputs, in turn and several times, and prints the best of each: other work on the machine can only
-//! slow a part down. Floating-point operations are those that the plan counts.
+//! `cargo bench -p pcc-tools --bench evaluation` measures the processor's fused multiply-add peak and every part of an
+//! evaluation of the shipped surrogate with eight inputs, in turn and several times, and prints the best of each: other
+//! work on the machine can only slow a part down. Floating-point operations are those that the plan counts.
 
 use pcc::report::{Align, Table};
 use pcc_compile::campaign::Runner;

@@ -1,6 +1,7 @@
 //! What models of the user's cost: matrices beside the built-in clutch, finite elements, programs.
 //!
-//! `cargo bench -p pcc-tools --bench models` prints one line per figure; ratios are of times taken in turn, in the same process.
+//! `cargo bench -p pcc-tools --bench models` prints one line per figure; ratios are of times taken in turn, in the same
+//! process.
 
 use pcc_compile::campaign::journal::Journal;
 use pcc_compile::campaign::{Campaign, Ledger, Runner};
@@ -99,8 +100,9 @@ fn finite_elements() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Throughput of a Python program that takes 0.2 s, against as many of its runs, taken alone, as go on at once. The interpreter starts
-/// without the site's packages (-I -S), so that eight at once find processors enough; what is left over is for pcc.
+/// Throughput of a Python program that takes 0.2 s, against as many of its runs, taken alone, as go on at once. The
+/// interpreter starts without the site's packages (-I -S), so that eight at once find processors enough; what is left
+/// over is for pcc.
 fn program() -> Result<(), Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let script = "import json, time\ntime.sleep(0.18)\np = json.load(open('params.json'))\n\

@@ -1,7 +1,7 @@
 //! Speed of what takes time: one direct computation, a fit, a build, a million samples.
 //!
-//! `cargo bench -p pcc-tools --bench speed` prints a line each; throughput is in model runs or samples per second, on all processors for builds
-//! and samples and on one for the model and for fits of one component.
+//! `cargo bench -p pcc-tools --bench speed` prints a line each; throughput is in model runs or samples per second, on
+//! all processors for builds and samples and on one for the model and for fits of one component.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use pcc_compile::campaign::Runner;

@@ -1,10 +1,10 @@
 //! How likely is a vibrating system to be stable, given what is not known about it?
 //!
-//! A [`Study`] names a model, its uncertain inputs and a method. [`build`] runs the model at a few dozen well-chosen points and fits a
-//! sparse polynomial chaos expansion to each component: real and imaginary parts of eigenvalues, or of symmetric functions of those
-//! that come close. The result is a [`Surrogate`], kept in a small versioned file. [`monte_carlo`] samples it millions of times
-//! without the model; a [`Session`] answers more than that. [`compare_with_model`] and [`certify_with_model`] run the model itself
-//! and say what the surrogate is worth.
+//! A [`Study`] names a model, its uncertain inputs and a method. [`build`] runs the model at a few dozen well-chosen
+//! points and fits a sparse polynomial chaos expansion to each component: real and imaginary parts of eigenvalues, or
+//! of symmetric functions of those that come close. The result is a [`Surrogate`], kept in a small versioned file.
+//! [`monte_carlo`] samples it millions of times without the model; a [`Session`] answers more than that.
+//! [`compare_with_model`] and [`certify_with_model`] run the model itself and say what the surrogate is worth.
 //!
 //! ```
 //! use pcc::{Silent, Study, Surrogate, build, monte_carlo};
@@ -22,9 +22,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A model of your own implements [`Model`] and goes to [`build_with`]; one that something else runs is stepped with [`ask`] and
-//! [`tell`]. What is re-exported here is what users need; the crates below have the rest: `pcc-evaluate`, which reads and samples
-//! surrogates and carries no model code, and `pcc-compile`, which makes them. `ARCHITECTURE.md` is the map.
+//! A model of your own implements [`Model`] and goes to [`build_with`]; one that something else runs is stepped with
+//! [`ask`] and [`tell`]. What is re-exported here is what users need; the crates below have the rest: `pcc-evaluate`,
+//! which reads and samples surrogates and carries no model code, and `pcc-compile`, which makes them. `ARCHITECTURE.md`
+//! is the map.
 //!
 //! Method and model: Kieu, Bergeot and Berger, *Sparse polynomial chaos expansion for stability analysis of a clutch
 //! system with uncertain parameters*, 23ème Congrès Français de Mécanique, Lille 2017, called the paper throughout.
@@ -42,13 +43,14 @@ pub mod reproduce;
 pub use error::Error;
 
 // Studies and models.
-pub use pcc_compile::mechanics::model::{Linearization, Model, ModelError};
+pub use pcc_compile::mechanics::model::command::results_table::ResultRow;
+pub use pcc_compile::mechanics::model::{Linearization, Model, ModelError, SecondOrder};
 pub use pcc_compile::study::Study;
 
 // From a study to a surrogate, and the model's word on it.
 pub use pcc_compile::ask_and_tell::{Step, Told, ask, tell};
 pub use pcc_compile::campaign::journal::{Contents, Journal};
-pub use pcc_compile::campaign::{Campaign, Ledger, Recording};
+pub use pcc_compile::campaign::{Books, Campaign, Ledger, Recording};
 pub use pcc_compile::compilation::{BuiltFile, build, build_to_file, build_with};
 pub use pcc_compile::reference::{Comparison, certify_with_model, compare_with_model};
 

@@ -24,7 +24,8 @@ pub(super) fn present(context: &Context, found: &Evaluation<'_>, pictures: &Pict
     Ok(if found.is_complete { Ending::Done } else { Ending::Interrupted })
 }
 
-/// Refuses pictures that nothing would be drawn in, and files that must not be replaced. `hint` says how to get a sweep.
+/// Refuses pictures that nothing would be drawn in, and files that must not be replaced. `hint` says how to get a
+/// sweep.
 pub(super) fn check_pictures(
     pictures: &Pictures,
     question: &Question,

@@ -16,8 +16,8 @@ Exit codes: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130 
 /// How likely is this machine to squeal, flutter or whirl, given what is not known about it?
 ///
 /// pcc runs a model of the machine at a few dozen well-chosen points, fits sparse polynomial chaos expansions to smooth
-/// functions of its eigenvalues, and writes them to a small file, the surrogate. Millions of samples of the surrogate then tell how
-/// often the machine is stable.
+/// functions of its eigenvalues, and writes them to a small file, the surrogate. Millions of samples of the surrogate
+/// then tell how often the machine is stable.
 #[derive(Debug, Parser)]
 #[command(name = "pcc", version, max_term_width = 110, after_help = FIRST_STEPS)]
 pub(super) struct Arguments {

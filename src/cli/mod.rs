@@ -33,8 +33,8 @@ enum Ending {
     Interrupted,
 }
 
-/// Runs pcc with these arguments, the first of them the program's name: 0 done, 1 a requested check did not hold, 2 bad usage or
-/// input, 130 interrupted.
+/// Runs pcc with these arguments, the first of them the program's name: 0 done, 1 a requested check did not hold, 2 bad
+/// usage or input, 130 interrupted.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,

@@ -27,8 +27,8 @@ pub(super) enum Output {
 pub(super) const SURROGATE_PAGE: &str = "<meta name=\"generator\" content=\"pcc report ";
 pub(super) const REPRODUCTION_PAGE: &str = "<meta name=\"generator\" content=\"pcc reproduce ";
 
-/// Refuses an output that would replace one of the command's own `inputs`, or a file of another kind: a study or data named by
-/// mistake.
+/// Refuses an output that would replace one of the command's own `inputs`, or a file of another kind: a study or data
+/// named by mistake.
 pub(super) fn refuse_to_replace(path: &Path, output: Output, inputs: &[&Path]) -> anyhow::Result<()> {
     keep_inputs(path, inputs)?;
     if !path.is_file() {

@@ -12,8 +12,8 @@ pub(super) struct QuestionOptions {
     #[arg(long, value_enum, default_value = "monte-carlo", conflicts_with = "points")]
     pub sampler: SamplerName,
 
-    /// Independent randomisations that the samples of sobol or latin-hypercube are divided among, at least 2; the error is
-    /// estimated from their spread [default: 16]
+    /// Independent randomisations that the samples of sobol or latin-hypercube are divided among, at least 2; the error
+    /// is estimated from their spread [default: 16]
     #[arg(long, value_name = "R", conflicts_with = "points", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub replicates: Option<u32>,
 
@@ -21,13 +21,13 @@ pub(super) struct QuestionOptions {
     #[arg(long = "where", value_name = "CONDITIONS", value_delimiter = ',', value_parser = condition, conflicts_with = "points")]
     pub conditions: Vec<Condition>,
 
-    /// Set INPUT to POINTS values one after the other, each with all samples; give it twice for a stability map, more often for a
-    /// longer table. Without --histogram, --quantiles and --critical
+    /// Set INPUT to POINTS values one after the other, each with all samples; give it twice for a stability map, more
+    /// often for a longer table. Without --histogram, --quantiles and --critical
     #[arg(long, value_name = "INPUT=FROM:TO:POINTS", value_parser = sweep, conflicts_with = "points")]
     pub sweep: Vec<Sweep>,
 
-    /// Also count the samples with max_re, re_K, im_K, frequency_K, damping_K (mode K) or a component below or above a value:
-    /// 'max_re<-0.1,frequency_3>600'
+    /// Also count the samples with max_re, re_K, im_K, frequency_K, damping_K (mode K) or a component below or above a
+    /// value: 'max_re<-0.1,frequency_3>600'
     #[arg(long, value_name = "EVENTS", value_delimiter = ',', value_parser = event, conflicts_with = "points")]
     pub events: Vec<Event>,
 

@@ -31,8 +31,8 @@ pub(super) struct SamplingOptions {
 /// Where model runs are recorded.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct RecordingOptions {
-    /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside the surrogate;
-    /// others only while a build lasts]
+    /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside
+    /// the surrogate; others only while a build lasts]
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
 

@@ -20,8 +20,8 @@ pub struct Confidence {
     /// Whether the samples are from a part of the domain alone.
     #[serde(skip)]
     pub is_confined: bool,
-    /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves open;
-    /// null if unknown.
+    /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves
+    /// open; null if unknown.
     pub surrogate_band: Option<Interval>,
     /// Estimated relative error of the proportion; null if unknown.
     pub estimated_error_percent: Option<f64>,
@@ -47,8 +47,8 @@ pub struct VerifiedBound {
 }
 
 impl Confidence {
-    /// `stable` counts the stable samples, `if_shifted` those that would be if max Re λ were larger by the lower, and by
-    /// the upper, end of the band.
+    /// `stable` counts the stable samples, `if_shifted` those that would be if max Re λ were larger by the lower, and
+    /// by the upper, end of the band.
     pub fn new(surrogate: &Surrogate, stable: Proportion, if_shifted: [u64; 2], interval: Interval) -> Self {
         let decision = &surrogate.decision;
         let share = |hits| Proportion { hits, samples: stable.samples }.value();
@@ -75,8 +75,8 @@ impl Confidence {
     }
 }
 
-/// Whether the estimated error of a surrogate is the part of modes left out alone: the rest takes two design levels, and points left
-/// out.
+/// Whether the estimated error of a surrogate is the part of modes left out alone: the rest takes two design levels,
+/// and points left out.
 pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
     surrogate.training.levels.len() == 1 || super::build::is_quadrature(surrogate)
 }

@@ -1,5 +1,5 @@
-//! HTML pages that stand alone: one file without scripts, without anything to load, readable on a phone, on paper, in light and
-//! in dark.
+//! HTML pages that stand alone: one file without scripts, without anything to load, readable on a phone, on paper, in
+//! light and in dark.
 
 use super::table::{Align, Table};
 use pcc_charts::{Chart, STYLE, escape};
@@ -143,13 +143,14 @@ impl Page {
     }
 }
 
-/// Sentences written for a terminal, as text of a page: numbers stay on the line of their percent sign, columns become a list, commands
-/// need no quotes.
+/// Sentences written for a terminal, as text of a page: numbers stay on the line of their percent sign, columns become
+/// a list, commands need no quotes.
 fn prose(text: &str) -> String {
     escape(text).replace(" %", "\u{a0}%").replace("   ", ", ").replace('`', "")
 }
 
-/// CSV as a link inside the page: bytes that could end the attribute or the URL are percent-encoded (RFC 2397 and 3986).
+/// CSV as a link inside the page: bytes that could end the attribute or the URL are percent-encoded (RFC 2397 and
+/// 3986).
 fn data_link(csv: &str) -> String {
     let mut link = "data:text/csv;charset=utf-8,".to_owned();
     for byte in csv.bytes() {

@@ -88,7 +88,8 @@ const METHODS: [Method; 9] = [
     ("sparse PC with derivatives", Color::Red, Symbol::Triangle, |row| row.derivatives && row.method == "sparse"),
 ];
 
-/// Error of the proportion over model runs for all methods with so many inputs, compared on `runs` points; `None` without rows.
+/// Error of the proportion over model runs for all methods with so many inputs, compared on `runs` points; `None`
+/// without rows.
 pub(super) fn cost_chart(rows: &[Row], inputs: usize, runs: u64) -> Option<Chart> {
     let own: Vec<&Row> = rows.iter().filter(|row| row.r == inputs).collect();
     // About half a point in a fifth of all points: what is below is drawn there.

@@ -1,4 +1,5 @@
-//! The paper, reproduced, on one page: table 2 and figures 3 and 4 with the paper's figures beside ours, and what it lacks.
+//! The paper, reproduced, on one page: table 2 and figures 3 and 4 with the paper's figures beside ours, and what it
+//! lacks.
 
 use super::charts::{density_chart, sobol_charts};
 use super::page::Page;
@@ -19,8 +20,9 @@ const INVARIANTS: &str = "Expanded are modes 1 and 2 themselves and, of the two 
 /// Panels side by side in a file.
 const COLUMNS: usize = 2;
 
-/// Table 2: rows of one kind of build together, smallest and largest values over its designs. The first table has the paper's
-/// methods with the paper's figures beside ours, the second the same methods on invariants; empty ones are left out.
+/// Table 2: rows of one kind of build together, smallest and largest values over its designs. The first table has the
+/// paper's methods with the paper's figures beside ours, the second the same methods on invariants; empty ones are left
+/// out.
 pub fn table_2(rows: &[Row]) -> Vec<Table> {
     let (papers, beyond): (Vec<_>, Vec<_>) = groups(rows).into_iter().partition(|group| is_papers(group[0]));
     let tables = [papers_methods(&papers), invariants(&beyond)];
@@ -220,7 +222,8 @@ fn cost_charts(work: &Reproduction) -> Vec<Chart> {
     (3..=MOST_INPUTS).filter_map(|inputs| cost_chart(&work.rows, inputs, work.options().runs)).collect()
 }
 
-/// The figures that are there as files, each with its name: `figure3.svg`, `figure4.svg` and, with the table, `errors.svg`.
+/// The figures that are there as files, each with its name: `figure3.svg`, `figure4.svg` and, with the table,
+/// `errors.svg`.
 pub fn figure_sheets(work: &Reproduction) -> Vec<(&'static str, String)> {
     let mut sheets = Vec::new();
     if work.options().figure_3 {

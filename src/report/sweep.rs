@@ -46,7 +46,8 @@ pub struct SweepReport {
     pub sweeps: Vec<Sweep>,
     /// The points, the last sweep varying fastest.
     pub points: Vec<SweepPoint>,
-    /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file: what the intervals do not hold.
+    /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file: what the intervals
+    /// do not hold.
     pub max_re_residuals: Vec<QuantileReport>,
     /// Files that were written.
     #[serde(skip)]
@@ -71,8 +72,8 @@ pub struct SweepPoint {
     pub standard_error: f64,
     /// Interval of the share: what the finite number of samples leaves open.
     pub interval: Interval,
-    /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves open; null if
-    /// unknown.
+    /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves
+    /// open; null if unknown.
     pub surrogate_band: Option<Interval>,
     /// Other events that were counted.
     pub events: Vec<EventReport>,
@@ -118,8 +119,8 @@ impl SweepReport {
         }
     }
 
-    /// The points as CSV: values of the swept inputs, bounds of those that are confined, samples, stable samples, stable proportion, its
-    /// interval, the band of the surrogate, the share of each event.
+    /// The points as CSV: values of the swept inputs, bounds of those that are confined, samples, stable samples,
+    /// stable proportion, its interval, the band of the surrogate, the share of each event.
     ///
     /// # Errors
     ///

@@ -1,12 +1,13 @@
-//! The paper, reproduced: its table 2 and figures 3 and 4, every method on the same points of the same model, and what lies beyond
-//! the paper beside it.
+//! The paper, reproduced: its table 2 and figures 3 and 4, every method on the same points of the same model, and what
+//! lies beyond the paper beside it.
 //!
-//! For each number r of uncertain parameters the model is run once at random points, as in the paper's section 5.1, and every
-//! surrogate is compared with these answers. The builds (`cases`) start from the shipped studies: gPC by quadrature with the
-//! table's orders; multi-element gPC of order 2 with the table's numbers of elements (its direct computations over 3ʳ), θ₁ = 0 so
-//! that their number alone ends the division; sparse PC from five designs; then the same and least squares of degree 3 on
-//! invariants. Modes 3 and 4 here are the paper's 1 and 2, the pair that coalesces ([`PAIR`]); errors of mean and variance are the
-//! larger ones of Re λ of the two. [`TABLE_2`] has the paper's figures.
+//! For each number r of uncertain parameters the model is run once at random points, as in the paper's section 5.1, and
+//! every surrogate is compared with these answers. The builds (`cases`) start from the shipped studies: gPC by
+//! quadrature with the table's orders; multi-element gPC of order 2 with the table's numbers of elements (its direct
+//! computations over 3ʳ), θ₁ = 0 so that their number alone ends the division; sparse PC from five designs; then the
+//! same and least squares of degree 3 on invariants. Modes 3 and 4 here are the paper's 1 and 2, the pair that
+//! coalesces ([`PAIR`]); errors of mean and variance are the larger ones of Re λ of the two. [`TABLE_2`] has the
+//! paper's figures.
 
 mod cases;
 mod paper;

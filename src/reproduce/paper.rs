@@ -53,8 +53,8 @@ const fn sparse(
     PaperRow { inputs, method: "sparse", order, direct_computations, mean_error, variance_error, stability_error }
 }
 
-/// All rows, the one that the paper prints twice (r = 7, multi-element) once. The error 0.18 % of gPC with r = 2 repeats
-/// other entries and is probably a misprint: with r = 1 and r = 3, between which it must lie, it is 6.45 %.
+/// All rows, the one that the paper prints twice (r = 7, multi-element) once. The error 0.18 % of gPC with r = 2
+/// repeats other entries and is probably a misprint: with r = 1 and r = 3, between which it must lie, it is 6.45 %.
 pub const TABLE_2: [PaperRow; 25] = [
     single(1, "gpc", 6, 7.0, 0.074, 0.35, 6.45),
     single(2, "gpc", 6, 49.0, 0.074, 0.35, 0.18),

@@ -1,5 +1,5 @@
-//! Derivatives against references: symbolic ones of the clutch's matrices, and those of invariants from eigenvalues with 60
-//! digits, at and next to exceptional points (`tests/data/derivatives.py`).
+//! Derivatives against references: symbolic ones of the clutch's matrices, and those of invariants from eigenvalues
+//! with 60 digits, at and next to exceptional points (`tests/data/derivatives.py`).
 
 use crate::support::text;
 use nalgebra::{Complex, DMatrix};
@@ -47,7 +47,8 @@ fn slopes(state_matrix: DMatrix<f64>, derivatives: &[DMatrix<f64>], modes: &[usi
     found.iter().map(|parts| parts.chunks(2).map(|part| Complex::new(part[0], part[1])).collect()).collect()
 }
 
-/// Compares by the modulus of the expected derivative, or by what rounding leaves of a much larger one in another input.
+/// Compares by the modulus of the expected derivative, or by what rounding leaves of a much larger one in another
+/// input.
 fn assert_close(found: Complex<f64>, expected: Complex<f64>, scale: f64, what: &str) {
     let error = (found - expected).norm();
     assert!(error <= DIFFERENTIATED * expected.norm().max(1e-6 * scale), "{what}: {found} is not {expected}");

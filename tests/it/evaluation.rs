@@ -1,4 +1,5 @@
-//! Evaluation: the same bits on every instruction set, on any number of threads and shards; the same values as the plain sums.
+//! Evaluation: the same bits on every instruction set, on any number of threads and shards; the same values as the
+//! plain sums.
 
 use crate::support::{repository, text};
 use pcc_compile::compilation::build;

@@ -1,4 +1,5 @@
-//! Full expansions on one element and on several: against an independent projection, direct quadrature, and the paper's table.
+//! Full expansions on one element and on several: against an independent projection, direct quadrature, and the paper's
+//! table.
 
 use crate::support::text;
 use nalgebra::Complex;
@@ -236,7 +237,8 @@ impl Model for Step {
     }
 }
 
-/// Two points do not determine six terms, even with derivatives: the design is what the degree says, and the fit says so.
+/// Two points do not determine six terms, even with derivatives: the design is what the degree says, and the fit says
+/// so.
 #[test]
 fn least_squares_take_the_runs_they_say_and_tell_if_these_are_too_few() {
     for (inputs, degree) in [(2, 2), (2, 4), (3, 2), (5, 2)] {

@@ -148,8 +148,8 @@ proptest! {
     }
 }
 
-/// Alexander and Hirschowitz: values and derivatives at 5 points of 8 inputs are 45 equations for 45 quadratic terms, but
-/// determine only 35 of them.
+/// Alexander and Hirschowitz: values and derivatives at 5 points of 8 inputs are 45 equations for 45 quadratic terms,
+/// but determine only 35 of them.
 #[test]
 fn counting_equations_says_little_of_what_they_determine() {
     let terms = candidates(8, 2, 1.0);

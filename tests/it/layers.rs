@@ -1,69 +1,56 @@
-//! The architecture: a module imports from layers above its own, or from its own layer without cycles, and the
-//! evaluator carries no model code.
+//! The architecture as ARCHITECTURE.md tells it: rooms import from rows above their own, crates keep their walls.
 
-use std::collections::{BTreeMap, BTreeSet};
+use crate::support::{repository, text};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Modules by layer, from those that know no domain to those that face users.
-const LAYERS: [&[&str]; 8] = [
-    &["numerics", "random", "statistics", "digest", "expression", "parallel", "progress"],
-    &["polynomial", "index_set", "input"],
-    &["model", "spectrum", "study"],
-    &["journal", "design"],
-    &["regression", "fit"],
-    &["surrogate", "artifact"],
-    &["build", "eval", "part", "reference", "reproduce"],
-    &["plot", "report", "cli"],
-];
+/// What the evaluator must not pull in: it is deployed where no model is built and nobody types.
+const NOT_IN_THE_EVALUATOR: [&str; 8] =
+    ["anyhow", "clap", "csv", "indicatif", "nalgebra", "pcc-compile", "pcc-expressions", "toml"];
 
-/// What the evaluator may import besides its own files: the surrogate, layers 0 and 1, and the part of the spectrum that
-/// turns components into eigenvalues.
-const EVALUATOR: [&str; 10] = [
-    "numerics",
-    "random",
-    "statistics",
-    "digest",
-    "progress",
-    "polynomial",
-    "index_set",
-    "input",
-    "surrogate",
-    "spectrum",
-];
-const PURE_SPECTRUM: [&str; 9] = [
-    "Block",
-    "Component",
-    "ModeSummary",
-    "Output",
-    "OutputKind",
-    "Summary",
-    "damping_ratio",
-    "is_equal_frequency",
-    "spectral_abscissa",
-];
-
-fn layer(module: &str) -> usize {
-    LAYERS
-        .iter()
-        .position(|layer| layer.contains(&module))
-        .unwrap_or_else(|| panic!("module {module} belongs to no layer; give it one in tests/layers.rs"))
+/// A room with its crate's sources: `crates/pcc-evaluate/src` and `evaluation/kernel`, say.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Room {
+    sources: String,
+    path: String,
 }
 
-fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
+/// The rooms of all tables under headings that name sources, in the order of the page.
+fn rooms() -> Vec<Room> {
+    let mut rooms = Vec::new();
+    let mut sources = None;
+    for line in text("ARCHITECTURE.md").lines() {
+        if line.starts_with('#') {
+            let name = line.strip_prefix("### `").and_then(|rest| rest.strip_suffix('`'));
+            sources = name.map(str::to_owned);
+        } else if let (Some(sources), Some(row)) = (&sources, line.strip_prefix("| `")) {
+            let path = row.split('`').next().unwrap().to_owned();
+            rooms.push(Room { sources: sources.clone(), path });
+        }
+    }
+    rooms
+}
+
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            rust_files(&path, files);
+            files.extend(rust_files(&path));
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             files.push(path);
         }
     }
+    files.sort();
+    files
 }
 
 /// Code without comments and without what only tests compile.
 fn code(path: &Path) -> String {
-    if path.file_name().is_some_and(|name| name == "tests.rs") {
+    let is_of_tests =
+        |part: &std::ffi::OsStr| ["tests.rs", "tests", "test_surrogates.rs"].iter().any(|name| part == *name);
+    if path.iter().any(is_of_tests) {
         return String::new();
     }
     let text = fs::read_to_string(path).unwrap();
@@ -71,97 +58,174 @@ fn code(path: &Path) -> String {
     product.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
-/// For every module, the files of it and what they import from the crate: (module, rest of the path).
-fn imports() -> BTreeMap<String, BTreeSet<(String, String)>> {
-    let source = crate::support::repository("src");
-    let mut files = Vec::new();
-    rust_files(&source, &mut files);
-    let mut imports: BTreeMap<String, BTreeSet<(String, String)>> = BTreeMap::new();
-    for file in files {
-        let first = file.strip_prefix(&source).unwrap().components().next().unwrap();
-        let module = Path::new(first.as_os_str()).file_stem().unwrap().to_str().unwrap().to_owned();
-        if ["lib", "main"].contains(&module.as_str()) {
-            continue;
-        }
-        let found = imports.entry(module.clone()).or_default();
-        for path in code(&file).split("crate::").skip(1) {
-            let end = path.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(path.len());
-            let rest: String = path[end..].chars().take_while(|&c| c != ';' && c != '(').collect();
-            if path[..end] != module {
-                found.insert((path[..end].to_owned(), rest));
-            }
-        }
-    }
-    imports
+/// Paths of the crate that code names, as `evaluation/kernel/lanes`.
+fn imports(code: &str) -> BTreeSet<String> {
+    let is_of_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let paths = code.split("crate::").skip(1);
+    paths.map(|path| path.split(|c| !is_of_path(c)).next().unwrap().trim_end_matches(':').replace("::", "/")).collect()
 }
 
-#[test]
-fn modules_import_from_layers_above_their_own() {
-    for (module, imported) in imports() {
-        for (other, _) in imported {
-            assert!(layer(&other) <= layer(&module), "{module} must not import {other}, which is a later layer");
-        }
-    }
+/// The innermost room that a path, or a file, of the crate lies in.
+fn room_of<'r>(rooms: &[&'r Room], path: &str) -> Option<&'r Room> {
+    let is_inside = |room: &&&Room| {
+        path.strip_prefix(&room.path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['/', '.']))
+    };
+    rooms.iter().filter(is_inside).max_by_key(|room| room.path.len()).copied()
 }
 
-/// Paths to other modules start with `crate::`, where the other tests see them: `super::` stays inside a module.
-#[test]
-fn modules_do_not_leave_themselves_by_super() {
-    let source = crate::support::repository("src");
-    let mut files = Vec::new();
-    rust_files(&source, &mut files);
-    for file in files {
-        let depth = file.strip_prefix(&source).unwrap().components().count();
-        let is_root = file.file_stem().is_some_and(|stem| stem == "mod");
-        let to_root = if is_root { depth - 1 } else { depth };
-        let leaving = "super::".repeat(to_root.max(1));
-        assert!(!code(&file).contains(&leaving), "{} reaches the crate's root by {leaving}", file.display());
-    }
-}
-
-#[test]
-fn modules_of_one_layer_have_no_cycles() {
-    let imports = imports();
-    let reaches = |from: &str, to: &str| {
-        let (mut seen, mut open) = (BTreeSet::new(), vec![from.to_owned()]);
-        while let Some(module) = open.pop() {
-            for (other, _) in imports.get(&module).into_iter().flatten() {
-                if seen.insert(other.clone()) {
-                    open.push(other.clone());
+/// For every file in a room: the room, the file, and the rooms that it imports from. A path that leads to a group of
+/// rooms stands for all of them.
+fn imported_rooms() -> Vec<(Room, PathBuf, Vec<Room>)> {
+    let all = rooms();
+    let mut found = Vec::new();
+    let sources: BTreeSet<&str> = all.iter().map(|room| room.sources.as_str()).collect();
+    for sources in sources {
+        let rooms: Vec<&Room> = all.iter().filter(|room| room.sources == sources).collect();
+        let folder = repository(sources);
+        for file in rust_files(&folder) {
+            let relative = file.strip_prefix(&folder).unwrap().to_str().unwrap();
+            let Some(own) = room_of(&rooms, relative) else { continue };
+            let mut targets = Vec::new();
+            for path in imports(&code(&file)) {
+                match room_of(&rooms, &path) {
+                    Some(room) => targets.push(room.clone()),
+                    None => {
+                        let group = format!("{}/", path.split('/').next().unwrap());
+                        targets.extend(
+                            rooms.iter().filter(|room| room.path.starts_with(&group)).map(|&room| room.clone()),
+                        );
+                    }
                 }
             }
+            found.push((own.clone(), file, targets));
         }
-        seen.contains(to)
-    };
-    for module in imports.keys() {
-        assert!(!reaches(module, module), "{module} imports itself by way of others");
+    }
+    found
+}
+
+#[test]
+fn rooms_import_from_rows_above_their_own() {
+    let rooms = rooms();
+    let row = |room: &Room| rooms.iter().position(|known| known == room).unwrap();
+    for (own, file, targets) in imported_rooms() {
+        for target in targets {
+            assert!(
+                row(&target) <= row(&own),
+                "{}: {} must not import {}, which is further down in ARCHITECTURE.md",
+                file.display(),
+                own.path,
+                target.path
+            );
+        }
     }
 }
 
+/// Otherwise a new room would be under no rule, and the page would tell of rooms that are gone.
+#[test]
+fn every_folder_is_a_room_of_the_map_and_every_room_is_there() {
+    let rooms = rooms();
+    assert!(rooms.len() > 20, "the tables of ARCHITECTURE.md are read: {rooms:?}");
+    for room in &rooms {
+        let path = repository(&room.sources).join(&room.path);
+        assert!(path.is_dir() || path.with_extension("rs").is_file(), "{room:?} is not there");
+    }
+    for sources in rooms.iter().map(|room| &room.sources).collect::<BTreeSet<_>>() {
+        let of_crate: Vec<&Room> = rooms.iter().filter(|room| &room.sources == sources).collect();
+        let folder = repository(sources);
+        for file in rust_files(&folder) {
+            let relative = file.strip_prefix(&folder).unwrap().to_str().unwrap();
+            let is_contents = ["lib.rs", "main.rs"].contains(&relative)
+                || relative
+                    .strip_suffix("/mod.rs")
+                    .is_some_and(|group| of_crate.iter().any(|room| room.path.starts_with(&format!("{group}/"))))
+                || relative.ends_with("test_surrogates.rs");
+            assert!(
+                is_contents || room_of(&of_crate, relative).is_some(),
+                "{sources}/{relative} is in no room; give it a row in ARCHITECTURE.md"
+            );
+        }
+    }
+}
+
+/// Paths to other rooms start with `crate::`, where the other tests see them: `super::` stays inside a room.
+#[test]
+fn rooms_are_not_left_by_super() {
+    for (own, file, _) in imported_rooms() {
+        let inside = file.strip_prefix(repository(&own.sources).join(&own.path));
+        let Ok(inside) = inside else { continue };
+        let depth = inside.components().count();
+        let is_root = inside.file_stem().is_some_and(|stem| stem == "mod");
+        let leaving = "super::".repeat(if is_root { depth } else { depth + 1 });
+        assert!(!code(&file).contains(&leaving), "{} leaves its room by {leaving}", file.display());
+    }
+}
+
+#[test]
+fn commands_do_not_know_each_other() {
+    let folder = repository("src/cli/commands");
+    for file in rust_files(&folder).into_iter().filter(|file| !file.ends_with("mod.rs")) {
+        let code = code(&file);
+        assert!(!code.contains("cli::commands"), "{} imports a command", file.display());
+        assert!(!code.contains("super::"), "{} reaches for its neighbours", file.display());
+    }
+}
+
+#[test]
+fn mathematics_knows_no_study_and_fits_know_no_files() {
+    for file in rust_files(&repository("crates/pcc-compile/src/fitting")) {
+        let code = code(&file);
+        for stranger in ["crate::study", "crate::mechanics", "crate::campaign", "crate::compilation", "::artifact"] {
+            assert!(!code.contains(stranger), "{} must not know {stranger}", file.display());
+        }
+    }
+}
+
+/// As cargo has it in its lock file: what the evaluator depends on, and what that does.
 #[test]
 fn the_evaluator_carries_no_model_code() {
-    for (module, rest) in &imports()["eval"] {
-        assert!(EVALUATOR.contains(&module.as_str()), "eval must not import {module}");
-        if module == "spectrum" {
-            for name in rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|name| !name.is_empty()) {
-                assert!(PURE_SPECTRUM.contains(&name), "eval must not import spectrum::{name}");
-            }
+    let lock = text("Cargo.lock");
+    let packages: Vec<(&str, Vec<&str>)> = lock
+        .split("[[package]]")
+        .skip(1)
+        .map(|package| {
+            let name = package.split("name = \"").nth(1).unwrap().split('"').next().unwrap();
+            let list = package.split("dependencies = [").nth(1).and_then(|list| list.split(']').next()).unwrap_or("");
+            (name, list.split('"').skip(1).step_by(2).map(|entry| entry.split(' ').next().unwrap()).collect())
+        })
+        .collect();
+    let direct = text("crates/pcc-evaluate/Cargo.toml");
+    let direct = direct.split("[dependencies]").nth(1).unwrap().split('[').next().unwrap();
+    let mut open: Vec<&str> =
+        direct.lines().filter_map(|line| line.split(['.', ' ']).next()).filter(|name| !name.is_empty()).collect();
+    assert!(open.contains(&"serde"), "the dependencies are read: {open:?}");
+    let mut seen = BTreeSet::new();
+    while let Some(name) = open.pop() {
+        if seen.insert(name) {
+            open.extend(packages.iter().filter(|(known, _)| *known == name).flat_map(|(_, list)| list));
         }
     }
-}
-
-#[test]
-fn fits_and_files_do_not_know_each_other() {
-    let imports = imports();
-    for (module, forbidden) in [("fit", "artifact"), ("artifact", "fit")] {
-        assert!(imports[module].iter().all(|(other, _)| other != forbidden), "{module} must not import {forbidden}");
+    for stranger in NOT_IN_THE_EVALUATOR {
+        assert!(!seen.contains(stranger), "pcc-evaluate pulls in {stranger}");
     }
 }
 
 #[test]
 fn bincode_is_used_in_one_file() {
-    let mut files = Vec::new();
-    rust_files(&crate::support::repository("src"), &mut files);
-    let using: Vec<_> = files.iter().filter(|file| code(file).contains("bincode::")).collect();
-    assert_eq!(using, [&crate::support::repository("src/artifact/binary.rs")]);
+    let all: Vec<PathBuf> =
+        ["crates", "src", "tools"].iter().flat_map(|folder| rust_files(&repository(folder))).collect();
+    let using: Vec<_> = all.iter().filter(|file| code(file).contains("bincode::")).collect();
+    assert_eq!(using, [&repository("crates/pcc-evaluate/src/artifact/binary.rs")]);
+}
+
+/// rustfmt wraps code, not comments.
+#[test]
+fn comments_end_at_column_120() {
+    let folders = ["crates", "src", "tests", "tools", "benches", "examples"];
+    for file in folders.iter().flat_map(|folder| rust_files(&repository(folder))) {
+        let source = fs::read_to_string(&file).unwrap();
+        for (number, line) in (1..).zip(source.lines()) {
+            let is_prose = line.trim_start().starts_with("//") && !line.contains(" | ");
+            assert!(!is_prose || line.chars().count() <= 120, "{}:{number} is too wide", file.display());
+        }
+    }
 }

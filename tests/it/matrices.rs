@@ -1,4 +1,5 @@
-//! Models by matrices of the user's: against the built-in clutch, against LAPACK, by their derivatives, and by what they refuse.
+//! Models by matrices of the user's: against the built-in clutch, against LAPACK, by their derivatives, and by what
+//! they refuse.
 
 use crate::support::{csv_rows, invariants_study, repository, text};
 use nalgebra::Complex;

@@ -36,9 +36,9 @@ fn without_times(text: &str) -> String {
     kept
 }
 
-/// Other processors round otherwise, and the search for a fit can end at another that is as good: decimals agree to a part
-/// in a thousand. What depends on the fit itself, its terms, degrees, bytes and residuals, only keeps its form. All else,
-/// counts of runs and samples among it, is the same.
+/// Other processors round otherwise, and the search for a fit can end at another that is as good: decimals agree to a
+/// part in a thousand. What depends on the fit itself, its terms, degrees, bytes and residuals, only keeps its form.
+/// All else, counts of runs and samples among it, is the same.
 fn says_the_same(found: &str, expected: &str) -> bool {
     let depends_on_fit =
         ["re_", "im_", "written to", "  error of max Re"].iter().any(|start| expected.starts_with(start))

@@ -13,8 +13,8 @@ const TITLE_SIZE: f64 = 18.0;
 /// Plot areas further in than this, because of long names, do not move the others of their column.
 const ALIGNED: f64 = 110.0;
 
-/// Draws charts as panels (a), (b), … of an SVG file that stands alone, row by row in `columns` (at least one); a single
-/// chart has no letter.
+/// Draws charts as panels (a), (b), … of an SVG file that stands alone, row by row in `columns` (at least one); a
+/// single chart has no letter.
 ///
 /// The file carries [`STYLE`] and follows light and dark by itself. `title` stands above the panels (an empty one takes
 /// no room); `description` is the text alternative of the whole.

@@ -5,9 +5,10 @@
 /// Everything hangs on custom properties of `.chart`, which a page may set to other values. Printed charts are light.
 // Dark applies to screens only, which leaves light for print.
 //
-// The levels of cells go from the paper to its opposite in lightness, so that their order survives grey prints and every
-// kind of colour blindness. Amber below one half and blue from there on, which red-, green- and blue-blind readers tell
-// apart, show where that border is. Edges are crisp because smoothed ones of neighbours would let the paper through.
+// The levels of cells go from the paper to its opposite in lightness, so that their order survives grey prints and
+// every kind of colour blindness. Amber below one half and blue from there on, which red-, green- and blue-blind
+// readers tell apart, show where that border is. Edges are crisp because smoothed ones of neighbours would let the
+// paper through.
 pub const STYLE: &str = "\
 .chart {
   --chart-paper: #ffffff;

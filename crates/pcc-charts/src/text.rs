@@ -2,8 +2,8 @@
 
 use super::path::coordinate;
 
-/// `text` as character data or attribute value of XML or HTML: nothing in it is markup, line ends are spaces, and what XML cannot
-/// hold is dropped.
+/// `text` as character data or attribute value of XML or HTML: nothing in it is markup, line ends are spaces, and what
+/// XML cannot hold is dropped.
 ///
 /// ```
 /// assert_eq!(pcc_charts::escape("<b> & 'c'"), "&lt;b&gt; &amp; &#39;c&#39;");

@@ -1,8 +1,9 @@
 //! Builds whose model somebody else runs: ask for the points, tell the answers, step by step.
 //!
-//! A build is stepped on what a journal knows of its runs. [`ask`] says which points it waits for; [`tell`] takes answers to them
-//! from a table, and takes none if the build could not go on with them. Once nothing is missing, [`crate::compilation::build`] with
-//! the journal makes the surrogate, with the bytes of a build that ran the model itself.
+//! A build is stepped on what a journal knows of its runs. [`ask`] says which points it waits for; [`tell`] takes
+//! answers to them from a table, and takes none if the build could not go on with them. Once nothing is missing,
+//! [`crate::compilation::build`] with the journal makes the surrogate, with the bytes of a build that ran the model
+//! itself.
 
 use crate::campaign::journal::{Contents, Journal, JournalError, RunOutcome};
 use crate::campaign::{Campaign, DesignPoint, Ledger, RowProblem, RunError, match_answers};
@@ -119,8 +120,8 @@ pub fn ask(study: &Study, contents: &Contents, observer: &dyn Observer) -> Resul
     }
 }
 
-/// Takes `rows` of answers into `journal`, which has `contents`. With `replaces`, an answer that contradicts an earlier one takes its
-/// place.
+/// Takes `rows` of answers into `journal`, which has `contents`. With `replaces`, an answer that contradicts an earlier
+/// one takes its place.
 ///
 /// # Errors
 ///

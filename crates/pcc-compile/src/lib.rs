@@ -1,7 +1,8 @@
 //! The compiler of `pcc`: from a study to a surrogate.
 //!
-//! A *study* names a model, its uncertain inputs and a method. The model runs at the points of a nested design; what it answers
-//! becomes components; each component is fitted; the result is a surrogate, which `pcc-evaluate` writes and samples.
+//! A *study* names a model, its uncertain inputs and a method. The model runs at the points of a nested design; what it
+//! answers becomes components; each component is fitted; the result is a surrogate, which `pcc-evaluate` writes and
+//! samples.
 //!
 //! | room | holds |
 //! |---|---|

@@ -1,7 +1,8 @@
 //! The evaluator of `pcc`: reads surrogate files and answers questions about them, without any model.
 //!
-//! A surrogate is a set of polynomial chaos expansions of eigenvalues, or of symmetric functions of those that come close, in
-//! uncertain inputs. What reads it here knows probability and files; it cannot run a model, since this crate depends on none.
+//! A surrogate is a set of polynomial chaos expansions of eigenvalues, or of symmetric functions of those that come
+//! close, in uncertain inputs. What reads it here knows probability and files; it cannot run a model, since this crate
+//! depends on none.
 //!
 //! | room | holds |
 //! |---|---|

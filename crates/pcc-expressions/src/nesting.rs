@@ -3,8 +3,8 @@
 use super::error::{Fault, TextError};
 use super::lexer::{Lexeme, Token};
 
-/// Deepest nesting of parentheses, signs and exponents. Nobody can read ten levels. A level takes up to 2 KB of stack, or
-/// 18 KB when nothing is optimized, so that these are half of the 2 MiB of a thread in the worst case.
+/// Deepest nesting of parentheses, signs and exponents. Nobody can read ten levels. A level takes up to 2 KB of stack,
+/// or 18 KB when nothing is optimized, so that these are half of the 2 MiB of a thread in the worst case.
 pub(super) const DEEPEST_NESTING: usize = 64;
 
 /// How deep the parser is in its recursion.

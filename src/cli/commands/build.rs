@@ -14,9 +14,9 @@ use std::path::PathBuf;
 /// Build a surrogate from a study
 ///
 /// Runs the model on a nested Latin hypercube design that grows until every component is fitted and the stability
-/// proportion is accurate enough, as far as the study asks for it, and writes index sets and coefficients. Full expansions
-/// (methods gpc and me-gpc) run it on a grid, or on a design whose size their degree fixes. The same study gives the same
-/// bytes on any number of threads.
+/// proportion is accurate enough, as far as the study asks for it, and writes index sets and coefficients. Full
+/// expansions (methods gpc and me-gpc) run it on a grid, or on a design whose size their degree fixes. The same study
+/// gives the same bytes on any number of threads.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Study file

@@ -7,7 +7,6 @@ use crate::cli::{Context, Ending};
 use crate::report::CertifyReport;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::certify_with_model;
 use pcc_evaluate::artifact::{Format, encode};
 use pcc_evaluate::foundation::save;
@@ -76,7 +75,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let format = options.output.as_ref().map_or(artifact.format, |path| Format::of_path(path));
     claim(output, Output::Surrogate, &[])?;
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
-    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+    let campaign = books.campaign(&study);
     let start = Instant::now();
     let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))

@@ -6,7 +6,6 @@ use crate::cli::{Context, Ending, complain};
 use crate::report::{CompareReport, significant};
 use anyhow::Context as _;
 use clap::Args;
-use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::compare_with_model;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -44,7 +43,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let study = read_study(&options.study)?;
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
-    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+    let campaign = books.campaign(&study);
     let start = Instant::now();
     let comparison = compare_with_model(&surrogate, campaign, options.samples, options.seed, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))

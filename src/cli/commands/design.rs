@@ -16,9 +16,9 @@ use std::path::PathBuf;
 
 /// Write the model runs that a build is waiting for as a table
 ///
-/// For models that something else than pcc runs: a scheduler, a cluster, a laboratory. Steps the build of STUDY as far as
-/// the recorded answers carry it, and writes the points whose answers it needs next. Run them, hand the answers over with pcc
-/// ingest, and repeat until there are no more: pcc build STUDY --resume then writes the surrogate.
+/// For models that something else than pcc runs: a scheduler, a cluster, a laboratory. Steps the build of STUDY as far
+/// as the recorded answers carry it, and writes the points whose answers it needs next. Run them, hand the answers over
+/// with pcc ingest, and repeat until there are no more: pcc build STUDY --resume then writes the surrogate.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Study file

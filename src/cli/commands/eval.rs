@@ -22,9 +22,9 @@ use std::time::Instant;
 /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices, critical values
 ///
 /// Needs the surrogate file only. Samples can be confined to a part of the domain (--where), and the proportion be had
-/// along one input or over two (--sweep). The answer is the same for any number of threads; with --shard it can be computed in
-/// parts, on any number of machines, for pcc merge to put together. With --points it evaluates the points of a CSV file
-/// instead, whose columns are named like the inputs, in physical units; other columns are ignored.
+/// along one input or over two (--sweep). The answer is the same for any number of threads; with --shard it can be
+/// computed in parts, on any number of machines, for pcc merge to put together. With --points it evaluates the points
+/// of a CSV file instead, whose columns are named like the inputs, in physical units; other columns are ignored.
 #[derive(Debug, Args)]
 #[command(
     group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]),

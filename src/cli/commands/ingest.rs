@@ -14,9 +14,10 @@ use std::path::PathBuf;
 
 /// Take answers to the points of a design from a table
 ///
-/// RESULTS.csv has the inputs of the table that pcc design wrote, and its column run if they have lost digits, and the eigenvalues as
-/// re_1, im_1, re_2, im_2 and so on in 1/s; a text in a column error marks a run that failed. Rows may come in any order, in part, and more than
-/// once; a row that contradicts an earlier answer is refused, and then none is taken.
+/// RESULTS.csv has the inputs of the table that pcc design wrote, and its column run if they have lost digits, and the
+/// eigenvalues as re_1, im_1, re_2, im_2 and so on in 1/s; a text in a column error marks a run that failed. Rows may
+/// come in any order, in part, and more than once; a row that contradicts an earlier answer is refused, and then none
+/// is taken.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Study file

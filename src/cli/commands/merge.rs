@@ -15,8 +15,8 @@ use std::time::Instant;
 
 /// Put the parts of an evaluation together
 ///
-/// Takes the files that eval has written with --shard and --part, in any order, and prints what one evaluation of all samples
-/// would have printed. Parts of different evaluations, missing and repeated shards are refused.
+/// Takes the files that eval has written with --shard and --part, in any order, and prints what one evaluation of all
+/// samples would have printed. Parts of different evaluations, missing and repeated shards are refused.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Files that eval --part has written

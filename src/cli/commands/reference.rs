@@ -35,13 +35,13 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
         keep_inputs(out, &[points, &options.study])?;
         let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
-        let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+        let campaign = books.campaign(&study);
         let source = options.study.display().to_string();
         context.print(&at_points(context, campaign, source, points, out, sampling.extrapolate)?)?;
         return Ok(Ending::Done);
     }
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
-    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+    let campaign = books.campaign(&study);
     let start = Instant::now();
     let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))

@@ -7,7 +7,6 @@ use crate::cli::{Context, Ending};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
 use anyhow::Context as _;
 use clap::Args;
-use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::{ModelSample, check_problem};
 use pcc_evaluate::components::Block;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
@@ -29,9 +28,9 @@ const PROGRAM_RUNS: u64 = 100;
 
 /// Put a surrogate on one page: an HTML file with its answer, pictures and tables
 ///
-/// Samples the surrogate and draws densities, modes over the inputs that matter most, Sobol' indices and the decay of its
-/// coefficients. With --study it also runs the model, and shows where the two differ. The page stands alone: no scripts, nothing
-/// to load.
+/// Samples the surrogate and draws densities, modes over the inputs that matter most, Sobol' indices and the decay of
+/// its coefficients. With --study it also runs the model, and shows where the two differ. The page stands alone: no
+/// scripts, nothing to load.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Surrogate file
@@ -74,7 +73,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
             let what = path.display().to_string();
             check_problem(surrogate, study).with_context(|| what.clone())?;
             let books = context.books_of_sampling(study, &options.recording.to_recording())?;
-            let campaign = Campaign { study, ledger: Some(&books.ledger) };
+            let campaign = books.campaign(study);
             let default_runs = if study.model.is_external() { PROGRAM_RUNS } else { RUNS };
             let found =
                 ModelSample::new(campaign, options.runs.unwrap_or(default_runs), options.seed, &context.terminal)

@@ -15,10 +15,11 @@ use std::time::Instant;
 
 /// Reproduce the paper: its table 2 and figures 3 and 4, and what lies beyond
 ///
-/// Builds the clutch by full, multi-element and sparse expansions of its eigenvalues and of invariants, for one to eight
-/// uncertain parameters, compares all with the model on the same points, and writes table2.csv, table2.md, the figures as SVG
-/// and report.html; files of these names in DIR are replaced. Takes about half a minute on two cores. If it is interrupted, the rows
-/// that are done are kept until the next run, in table2.partial.csv if there was a table already.
+/// Builds the clutch by full, multi-element and sparse expansions of its eigenvalues and of invariants, for one to
+/// eight uncertain parameters, compares all with the model on the same points, and writes table2.csv, table2.md, the
+/// figures as SVG and report.html; files of these names in DIR are replaced. Takes about half a minute on two cores. If
+/// it is interrupted, the rows that are done are kept until the next run, in table2.partial.csv if there was a table
+/// already.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Only this part

@@ -7,7 +7,7 @@ use crate::cli::{Context, Ending};
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table};
 use anyhow::Context as _;
 use clap::Args;
-use pcc_compile::campaign::{Books, Campaign};
+use pcc_compile::campaign::Books;
 use pcc_compile::mechanics::model::ModelError;
 use pcc_compile::mechanics::spectrum::Target;
 use pcc_compile::reference::compare_with_model;
@@ -23,7 +23,8 @@ use std::time::Instant;
 /// Build, evaluate and check a study end to end
 ///
 /// Builds the surrogate, samples it a million times and compares it with ten thousand direct computations at the same
-/// points (a hundred, if a program makes them). Without STUDY it takes the built-in one: the clutch of the paper with all eight parameters uncertain.
+/// points (a hundred, if a program makes them). Without STUDY it takes the built-in one: the clutch of the paper with
+/// all eight parameters uncertain.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Study file [default: the built-in clutch with 8 uncertain parameters]
@@ -33,7 +34,8 @@ pub(in crate::cli) struct Options {
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub output: PathBuf,
 
-    /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for samples]
+    /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for
+    /// samples]
     #[arg(long, value_name = "S", value_parser = seed())]
     pub seed: Option<u64>,
 
@@ -125,7 +127,7 @@ fn build_and_compare(
     let build = BuildReport::of_file(&study, &built, path.display().to_string());
     let books = Books::after_build(&study, &recording, &path)?;
     books.notes.iter().for_each(|note| context.note(note));
-    let campaign = Campaign { study: &study, ledger: Some(&books.ledger) };
+    let campaign = books.campaign(&study);
     let samples = if study.model.is_external() { COMPARE_PROGRAM_RUNS } else { COMPARE_SAMPLES };
     let start = Instant::now();
     let comparison = compare_with_model(&built.surrogate, campaign, samples, seed, &context.terminal)

@@ -1,8 +1,9 @@
 //! Estimated against true errors of the stability proportion, over inputs, seeds and sizes.
 //!
-//! `cargo run --release -p pcc-tools --bin decision_estimate -- [POINTS]` builds every level of every design separately, with
-//! derivatives and with values alone, and compares it with the model on POINTS points, 100 000 by default. One point is 0.005 % of
-//! the clutch's proportion; ratios of errors below a few of them are noise and left out of the summary.
+//! `cargo run --release -p pcc-tools --bin decision_estimate -- [POINTS]` builds every level of every design
+//! separately, with derivatives and with values alone, and compares it with the model on POINTS points, 100 000 by
+//! default. One point is 0.005 % of the clutch's proportion; ratios of errors below a few of them are noise and left
+//! out of the summary.
 
 use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;

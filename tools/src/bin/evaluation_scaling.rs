@@ -1,7 +1,8 @@
 //! Time and peak memory of whole evaluations, from a million samples to a billion (Linux).
 //!
-//! `cargo build --release && cargo run --release -p pcc-tools --bin evaluation_scaling -- [LARGEST]` runs `pcc eval` on the shipped surrogate with
-//! eight inputs as a user would, start to end, by default up to 10⁹ samples: about two minutes on two cores.
+//! `cargo build --release && cargo run --release -p pcc-tools --bin evaluation_scaling -- [LARGEST]` runs `pcc eval` on
+//! the shipped surrogate with eight inputs as a user would, start to end, by default up to 10⁹ samples: about two
+//! minutes on two cores.
 
 use pcc::report::{Align, Table};
 use pcc_evaluate::foundation::count;
@@ -11,8 +12,8 @@ use std::time::{Duration, Instant};
 
 const SURROGATE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../surrogates/clutch-r8.pcc");
 
-/// Samples of the run that start-up is measured by: from here on nothing but the number of samples grows (Sobol' indices take as
-/// many).
+/// Samples of the run that start-up is measured by: from here on nothing but the number of samples grows (Sobol'
+/// indices take as many).
 const FEW: u64 = 16_384;
 
 /// Repetitions of short runs: other work on the machine can only slow one down.

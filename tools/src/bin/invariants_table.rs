@@ -1,7 +1,8 @@
 //! Surrogates by invariants against the model on the same points, over the seeds 1 to 5, sizes chosen by the tool.
 //!
-//! `cargo run --release -p pcc-tools --bin invariants_table -- [POINTS] [INPUTS…]` prints one row per number of inputs and seed: with
-//! derivatives, with values alone, and for 8 inputs with other tolerances and by the paper's method with ten times the runs.
+//! `cargo run --release -p pcc-tools --bin invariants_table -- [POINTS] [INPUTS…]` prints one row per number of inputs
+//! and seed: with derivatives, with values alone, and for 8 inputs with other tolerances and by the paper's method with
+//! ten times the runs.
 
 use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;

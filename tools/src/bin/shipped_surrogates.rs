@@ -1,8 +1,8 @@
 //! Rebuilds what is shipped: `schemas/` and, beside every study in `surrogates/`, its `.pcc` and `.json`.
 //!
-//! `cargo run --release -p pcc-tools --bin shipped_surrogates` writes them; with `-- --check` it compares instead, and fails if the
-//! schema differs, if a surrogate has other index sets or coefficients beyond the tolerance between machines, or if
-//! the two forms of a surrogate differ.
+//! `cargo run --release -p pcc-tools --bin shipped_surrogates` writes them; with `-- --check` it compares instead, and
+//! fails if the schema differs, if a surrogate has other index sets or coefficients beyond the tolerance between
+//! machines, or if the two forms of a surrogate differ.
 
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::{Format, decode, encode, read, schema};

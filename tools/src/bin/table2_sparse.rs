@@ -1,8 +1,9 @@
-//! The sparse rows of the paper's table 2: every r from 3 to 8 over the seeds 1 to 5, against the model on the same points.
+//! The sparse rows of the paper's table 2: every r from 3 to 8 over the seeds 1 to 5, against the model on the same
+//! points.
 //!
-//! `cargo run --release -p pcc-tools --bin table2_sparse -- [POINTS] [KEY=VALUE …]` with the keys `initial`, `step` (both times
-//! r), `initial_r2` (times r²), `q_norm`, `epsilon_forward`, `epsilon_backward`, `max_degree`, `s2_target`, `inputs` (one r only) overrides the
-//! defaults for all r at once: this is how the defaults were chosen.
+//! `cargo run --release -p pcc-tools --bin table2_sparse -- [POINTS] [KEY=VALUE …]` with the keys `initial`, `step`
+//! (both times r), `initial_r2` (times r²), `q_norm`, `epsilon_forward`, `epsilon_backward`, `max_degree`, `s2_target`,
+//! `inputs` (one r only) overrides the defaults for all r at once: this is how the defaults were chosen.
 
 use pcc_compile::fitting::fit::FitMethod;
 use pcc_compile::reference::compare_with_model;

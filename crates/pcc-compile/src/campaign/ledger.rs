@@ -95,8 +95,8 @@ impl Ledger {
         Self::new(study.model_hash(), Some(journal))
     }
 
-    /// What `contents` has of this model is known, and need not be run again. Answers with derivatives stand above those without, and
-    /// these above failures.
+    /// What `contents` has of this model is known, and need not be run again. Answers with derivatives stand above
+    /// those without, and these above failures.
     #[must_use]
     pub fn knowing(mut self, contents: &Contents) -> Self {
         for record in contents.records.iter().filter(|record| record.model == self.model) {

@@ -9,10 +9,12 @@ use nalgebra::Complex;
 use std::collections::HashMap;
 use thiserror::Error;
 
-/// Inputs of a numbered run may differ from the design's by this share of their interval: tables are written with fewer digits.
+/// Inputs of a numbered run may differ from the design's by this share of their interval: tables are written with fewer
+/// digits.
 const INPUT_TOLERANCE: f64 = 1e-4;
 
-/// Two answers to the same run may differ by this share of the largest eigenvalue: solvers on other machines round otherwise.
+/// Two answers to the same run may differ by this share of the largest eigenvalue: solvers on other machines round
+/// otherwise.
 const ANSWER_TOLERANCE: f64 = 1e-9;
 
 /// Why a row of results cannot be taken.
@@ -96,12 +98,12 @@ pub struct MatchedAnswers {
     pub repeated: usize,
 }
 
-/// Finds the run of each row among those `asked` for, in the order of the design, and what is new; `known` are the outcomes of these
-/// runs as far as there are any.
+/// Finds the run of each row among those `asked` for, in the order of the design, and what is new; `known` are the
+/// outcomes of these runs as far as there are any.
 ///
-/// A row belongs to the run with its number, whose inputs it must have to four digits of its interval, or else to that with the bits of its inputs.
-/// Answers to a run that has failed are new; failures of a run that was answered are not. With `replaces`, an answer that
-/// contradicts an earlier one takes its place.
+/// A row belongs to the run with its number, whose inputs it must have to four digits of its interval, or else to that
+/// with the bits of its inputs. Answers to a run that has failed are new; failures of a run that was answered are not.
+/// With `replaces`, an answer that contradicts an earlier one takes its place.
 ///
 /// # Errors
 ///

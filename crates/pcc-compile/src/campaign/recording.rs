@@ -1,10 +1,11 @@
 //! What is recorded of model runs, where, and what of it is used again: one policy for every face.
 //!
-//! Runs of programs are recorded unless the user forbids it. Runs of `pcc`'s own models are recorded while a build lasts, so that
-//! an interrupted one can go on, and thrown away with it unless somebody asked for the journal or it took long to fill.
+//! Runs of programs are recorded unless the user forbids it. Runs of `pcc`'s own models are recorded while a build
+//! lasts, so that an interrupted one can go on, and thrown away with it unless somebody asked for the journal or it
+//! took long to fill.
 
 use super::journal::{Contents, Journal, JournalError};
-use super::ledger::Ledger;
+use super::ledger::{Campaign, Ledger};
 use crate::study::{ModelSettings, Study};
 use pcc_evaluate::foundation::plural;
 use std::fmt;
@@ -157,13 +158,13 @@ pub struct Books {
     /// What to tell the user before the first run.
     pub notes: Vec<Note>,
     journal: Option<PathBuf>,
-    /// Whether the journal is of use only until the command ends: pcc runs the model itself, nobody asked for the journal, and
-    /// this command began it.
+    /// Whether the journal is of use only until the command ends: pcc runs the model itself, nobody asked for the
+    /// journal, and this command began it.
     is_disposable: bool,
 }
 
-/// Where a build records its runs unless it is told otherwise: those of programs where other commands look for them; others, which are of
-/// use only while the build lasts, beside the surrogate.
+/// Where a build records its runs unless it is told otherwise: those of programs where other commands look for them;
+/// others, which are of use only while the build lasts, beside the surrogate.
 pub fn journal_of_build(study: &Study, surrogate: &Path) -> PathBuf {
     match study.model.is_external() {
         true => journal_here(study),
@@ -190,8 +191,8 @@ impl Books {
         Self::open(study, recording, Some(journal_of_build(study, surrogate)))
     }
 
-    /// Opens the books of work that runs the model at random points: runs of programs are recorded, others only if the user
-    /// names a journal.
+    /// Opens the books of work that runs the model at random points: runs of programs are recorded, others only if the
+    /// user names a journal.
     ///
     /// # Errors
     ///
@@ -204,7 +205,8 @@ impl Books {
         }
     }
 
-    /// Opens the books of work that goes on after a build: the runs of programs that the build has made are in its journal by now.
+    /// Opens the books of work that goes on after a build: the runs of programs that the build has made are in its
+    /// journal by now.
     ///
     /// # Errors
     ///
@@ -251,6 +253,11 @@ impl Books {
         Self { ledger: Ledger::blank(study), notes: Vec::new(), journal: None, is_disposable: false }
     }
 
+    /// A campaign of `study` with these books.
+    pub fn campaign<'b>(&'b self, study: &'b Study) -> Campaign<'b> {
+        Campaign { study, ledger: Some(&self.ledger) }
+    }
+
     /// The journal, if it stays when the command ends.
     pub fn kept_journal(&self) -> Option<&Path> {
         self.journal.as_deref().filter(|_| !self.is_disposable)
@@ -262,8 +269,8 @@ impl Books {
         Some(Note::Recorded { journal: journal.clone(), runs: self.ledger.recorded() })
     }
 
-    /// Ends work that failed or was interrupted, and says what is recorded of it. The journal of interrupted work is kept if it
-    /// took long to fill.
+    /// Ends work that failed or was interrupted, and says what is recorded of it. The journal of interrupted work is
+    /// kept if it took long to fill.
     pub fn give_up(self, is_interruption: bool) -> Option<Note> {
         let took_long = is_interruption && self.ledger.recorded_time() >= WORTH_KEEPING;
         if took_long || !self.is_disposable {

@@ -8,23 +8,24 @@
 //! **Error of the proportion.** The residuals of run i are added to the components at many random points; the share of
 //! points that change sides, Δp_i (stable gained minus lost), is what the proportion would be off by if the surrogate
 //! erred by that much everywhere. Only points where max Re is near zero change sides, and runs are weighted by how near
-//! their own max Re is, w_i = 1/(1 + (max Re_i/median)²). Errors at distant points of the stability boundary are taken as
-//! independent, about one per design point, so with the effective number of runs n = (Σw)²/Σw² the estimate is
+//! their own max Re is, w_i = 1/(1 + (max Re_i/median)²). Errors at distant points of the stability boundary are taken
+//! as independent, about one per design point, so with the effective number of runs n = (Σw)²/Σw² the estimate is
 //!
 //! ε² = (rms(Δp)² (1 + 1/√k)² + 1/T²)/n + mean(Δp)² [only if beyond four standard errors] + δ² + f²,
 //!
-//! where k is the effective number of residuals, of which few may all be small by chance, and T the number of points: shares
-//! below 1/T are not seen. (That part is reported, but no reason for more runs: where few cases are stable, it would take
-//! thousands.) The change between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean |Δp| of
-//! this level and m′ that of the one before: of a difference of two independent errors of these sizes, this is the share of
-//! the smaller one. And f is the share of runs that the model itself calls otherwise than the modes
-//! the surrogate carries: modes left out, or real eigenvalues. More runs do not lower f, so the build does not ask for them.
+//! where k is the effective number of residuals, of which few may all be small by chance, and T the number of points:
+//! shares below 1/T are not seen. (That part is reported, but no reason for more runs: where few cases are stable, it
+//! would take thousands.) The change between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean
+//! |Δp| of this level and m′ that of the one before: of a difference of two independent errors of these sizes, this is
+//! the share of the smaller one. And f is the share of runs that the model itself calls otherwise than the modes the
+//! surrogate carries: modes left out, or real eigenvalues. More runs do not lower f, so the build does not ask for
+//! them.
 //!
 //! Residuals of points that chose the settings of a fit flatter it, so rms and mean use blind residuals
-//! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the quantiles, residuals
-//! that are not blind are doubled. `tools/src/bin/decision_estimate.rs` compares estimate and truth over seeds and sizes: the
-//! truth is a half to three quarters of the estimate in the median and seldom more than three times it. Where errors all point the same way, the
-//! assumption of independence fails and it can be more.
+//! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the
+//! quantiles, residuals that are not blind are doubled. `tools/src/bin/decision_estimate.rs` compares estimate and
+//! truth over seeds and sizes: the truth is a half to three quarters of the estimate in the median and seldom more than
+//! three times it. Where errors all point the same way, the assumption of independence fails and it can be more.
 
 use crate::campaign::Run;
 use crate::fitting::fit::Fitted;
@@ -84,8 +85,8 @@ pub(super) struct Judgement {
     pub previous: Option<Previous>,
 }
 
-/// Judges `surrogate`, fitted to `values` of its components at `runs`; `previous` is the judgement of the level before. If
-/// there is none and the level `is_last`, nothing can be estimated, and the points it would take are not evaluated.
+/// Judges `surrogate`, fitted to `values` of its components at `runs`; `previous` is the judgement of the level before.
+/// If there is none and the level `is_last`, nothing can be estimated, and the points it would take are not evaluated.
 pub(super) fn judge(
     surrogate: &Surrogate,
     fitted: &[Fitted],
@@ -174,9 +175,9 @@ fn residual_quantiles(
     LEVELS.map(|level| Quantile { level, value: quantile(&found, level) }).to_vec()
 }
 
-/// What is known of a surrogate by quadrature, from `values` of its components and `runs` at nodes with these `weights`, which sum
-/// to one. Residuals at nodes say nothing of what lies between them, so only the share of cases is known in which modes that the
-/// surrogate does not carry decide stability.
+/// What is known of a surrogate by quadrature, from `values` of its components and `runs` at nodes with these
+/// `weights`, which sum to one. Residuals at nodes say nothing of what lies between them, so only the share of cases is
+/// known in which modes that the surrogate does not carry decide stability.
 pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run], weights: &[f64]) -> Decision {
     let share = |holds: &dyn Fn(usize) -> bool| (0..runs.len()).filter(|&i| holds(i)).map(|i| weights[i]).sum::<f64>();
     let forgotten = share(&|i| contradicts(surrogate, values, i, &runs[i]));
@@ -272,7 +273,8 @@ impl<'a> Judge<'a> {
         effective_count(&self.weights)
     }
 
-    /// By how much max Re can move at most if every component is larger by its residual: |√(d + e) ∓ √d| ≤ √|e| for a pair.
+    /// By how much max Re can move at most if every component is larger by its residual: |√(d + e) ∓ √d| ≤ √|e| for a
+    /// pair.
     fn reach(&self, residual: &[f64]) -> f64 {
         let part = |output: &Output, k: usize| {
             let [re, im] = [2 * k, 2 * k + 1].map(|at| residual[output.components[at].id]);

@@ -1,10 +1,11 @@
-//! Builds by quadrature: full expansions on one element (gPC) or on several (multi-element gPC), each with a tensor Gauss rule
-//! of its own.
+//! Builds by quadrature: full expansions on one element (gPC) or on several (multi-element gPC), each with a tensor
+//! Gauss rule of its own.
 //!
-//! Elements are divided one by one, as [`crate::fitting::fit::multi_element`] says, until none needs it, or the study's number of elements
-//! or of model runs would be exceeded. The runs of a divided element are spent: they count, but its parts have nodes of their
-//! own. Modes are grouped by the spectra at the nodes of all elements; if new nodes change the groups, all elements are projected
-//! anew from the runs at hand, and divided further if the new components ask for it, until the groups stay.
+//! Elements are divided one by one, as [`crate::fitting::fit::multi_element`] says, until none needs it, or the study's
+//! number of elements or of model runs would be exceeded. The runs of a divided element are spent: they count, but its
+//! parts have nodes of their own. Modes are grouped by the spectra at the nodes of all elements; if new nodes change
+//! the groups, all elements are projected anew from the runs at hand, and divided further if the new components ask for
+//! it, until the groups stay.
 
 use super::evaluations::groups;
 use super::{BuildError, decision, record};

@@ -46,8 +46,8 @@ pub(super) fn groups(outputs: &[Output]) -> Vec<&[usize]> {
     outputs.iter().map(|output| output.modes.as_slice()).collect()
 }
 
-/// A growing design with one model run per point. No point is run twice. Points whose runs failed, if the study skips those,
-/// are no samples.
+/// A growing design with one model run per point. No point is run twice. Points whose runs failed, if the study skips
+/// those, are no samples.
 pub(super) struct Evaluations<'a> {
     study: &'a Study,
     campaign: Campaign<'a>,
@@ -116,7 +116,8 @@ impl<'a> Evaluations<'a> {
         Ok(())
     }
 
-    /// Whether enough runs answered: those that failed leave holes in the design, and more than half of it is no design.
+    /// Whether enough runs answered: those that failed leave holes in the design, and more than half of it is no
+    /// design.
     fn check_failures(&self) -> Result<(), BuildError> {
         let (failed, answered) = (self.failed(), self.runs.len());
         if failed <= answered && answered >= LEAST_RUNS {
@@ -172,9 +173,9 @@ impl<'a> Evaluations<'a> {
         })
     }
 
-    /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come without. Runs in
-    /// which an output's modes, or all modes of the study together, cannot be separated from the rest of the spectrum have none
-    /// for its components.
+    /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come
+    /// without. Runs in which an output's modes, or all modes of the study together, cannot be separated from the rest
+    /// of the spectrum have none for its components.
     fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
         if !self.runner.has_derivatives() {
             return None;

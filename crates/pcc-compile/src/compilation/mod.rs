@@ -23,14 +23,14 @@ use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::surrogate::Surrogate;
 use stopping::StoppingRule;
 
-/// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool: the same bits
-/// for any number of threads.
+/// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool:
+/// the same bits for any number of threads.
 ///
-/// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives enter the
-/// fit beside the values if the study wants them and the model has them. All components share one nested design. Level by level
-/// it grows by one step until every component is fitted well enough and, if the study asks for it, the estimated error of the
-/// stability proportion is small enough, or has not fallen while the design grew by four levels to twice its size. Modes are
-/// grouped anew at each level; no model run is repeated or dropped.
+/// Methods by quadrature run the model at the nodes of their rules, element by element. For the others, derivatives
+/// enter the fit beside the values if the study wants them and the model has them. All components share one nested
+/// design. Level by level it grows by one step until every component is fitted well enough and, if the study asks for
+/// it, the estimated error of the stability proportion is small enough, or has not fallen while the design grew by four
+/// levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
 ///
 /// # Errors
 ///
@@ -52,8 +52,8 @@ pub fn build<'a>(campaign: impl Into<Campaign<'a>>, observer: &dyn Observer) -> 
     build_with(campaign, campaign.study.model()?, observer)
 }
 
-/// The build with a model of your own in place of the study's, whose inputs it takes. The hashes in the surrogate are still
-/// those of the study: `compare` and `certify` would run the study's model.
+/// The build with a model of your own in place of the study's, whose inputs it takes. The hashes in the surrogate are
+/// still those of the study: `compare` and `certify` would run the study's model.
 ///
 /// # Errors
 ///
@@ -72,8 +72,8 @@ pub fn build_with<'a>(
     }
 }
 
-/// The paper's five steps (section 3.3.3), for all components on one design: a level is a design of one size, with everything
-/// fitted anew.
+/// The paper's five steps (section 3.3.3), for all components on one design: a level is a design of one size, with
+/// everything fitted anew.
 fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
     let study = campaign.study;
     let mut evaluations = Evaluations::new(campaign, model)?;

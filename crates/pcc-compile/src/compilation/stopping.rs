@@ -1,14 +1,14 @@
 //! The stopping rule: when a design is large enough.
 //!
-//! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error of the stability
-//! proportion is small enough; or when that error has not fallen for [`PATIENCE`] levels while the design grew to [`GROWTH`]
-//! times its size; or at the largest design.
+//! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error of the
+//! stability proportion is small enough; or when that error has not fallen for [`PATIENCE`] levels while the design
+//! grew to [`GROWTH`] times its size; or at the largest design.
 
 use crate::fitting::fit::{Fitted, Stop};
 use crate::study::Study;
 
-/// Levels without a lower estimate, and growth of the design over them, after which more runs are taken to be of no use:
-/// where stability is within rounding of its limit everywhere, or where the model jumps.
+/// Levels without a lower estimate, and growth of the design over them, after which more runs are taken to be of no
+/// use: where stability is within rounding of its limit everywhere, or where the model jumps.
 const PATIENCE: usize = 4;
 const GROWTH: usize = 2;
 

@@ -2,7 +2,7 @@
 
 use super::{BuildError, build};
 use crate::campaign::journal::JournalError;
-use crate::campaign::{Books, Campaign, Failure, Note, Recording};
+use crate::campaign::{Books, Failure, Note, Recording};
 use crate::study::Study;
 use pcc_evaluate::artifact::{Format, WriteError, encode};
 use pcc_evaluate::foundation::{FileError, Observer, check_writable, is_interruption, save};
@@ -45,8 +45,8 @@ pub struct BuiltFile {
     pub elapsed_seconds: f64,
 }
 
-/// Builds the surrogate of `study` and writes it to `path`, which is tried before the first model run. `tell` is given what the user
-/// should know of recorded runs, when it is known.
+/// Builds the surrogate of `study` and writes it to `path`, which is tried before the first model run. `tell` is given
+/// what the user should know of recorded runs, when it is known.
 ///
 /// # Errors
 ///
@@ -63,7 +63,7 @@ pub fn build_to_file(
     let books = Books::of_build(study, recording, path)?;
     books.notes.iter().for_each(tell);
     let start = Instant::now();
-    let surrogate = match build(Campaign { study, ledger: Some(&books.ledger) }, observer) {
+    let surrogate = match build(books.campaign(study), observer) {
         Ok(surrogate) => surrogate,
         Err(error) => {
             if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {

@@ -4,10 +4,11 @@
 //! over mass). For a 6-degree-of-freedom system it takes the error of Re λ from 7e-8 to 2e-11 1/s.
 //!
 //! Rigid-body motion makes zero a multiple, defective eigenvalue. Its computed copies scatter, and in rare cases (one
-//! clutch in some millions) the QR iteration circles around them for hundreds of sweeps. In another orthogonal basis the
-//! same matrix has other roundings and converges, so the iteration is given few sweeps, but several bases.
+//! clutch in some millions) the QR iteration circles around them for hundreds of sweeps. In another orthogonal basis
+//! the same matrix has other roundings and converges, so the iteration is given few sweeps, but several bases.
 //!
-//! The Schur form A = D S Q T Qᵀ D⁻¹ is kept for those who need invariant subspaces: D balances, the power of two S scales.
+//! The Schur form A = D S Q T Qᵀ D⁻¹ is kept for those who need invariant subspaces: D balances, the power of two S
+//! scales.
 
 use nalgebra::linalg::Schur;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
@@ -77,8 +78,8 @@ pub fn eigenvalues(matrix: DMatrix<f64>) -> Result<Vec<Complex<f64>>, Eigenvalue
     SchurForm::new(matrix).map(|schur| schur.eigenvalues())
 }
 
-/// A = D (s Q T Qᵀ) D⁻¹ with a diagonal D and a scalar s of powers of two, an orthogonal Q and T upper triangular but for
-/// 2 × 2 blocks on its diagonal.
+/// A = D (s Q T Qᵀ) D⁻¹ with a diagonal D and a scalar s of powers of two, an orthogonal Q and T upper triangular but
+/// for 2 × 2 blocks on its diagonal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SchurForm {
     balance: DVector<f64>,
@@ -119,7 +120,8 @@ impl SchurForm {
         Err(EigenvalueError::NotConverged { iterations })
     }
 
-    /// All eigenvalues, in the order of the diagonal of T. The first of a conjugate pair has the positive imaginary part.
+    /// All eigenvalues, in the order of the diagonal of T. The first of a conjugate pair has the positive imaginary
+    /// part.
     pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
         of_quasi_triangular(&self.triangular).iter().map(|lambda| lambda * self.scale).collect()
     }
@@ -157,8 +159,8 @@ fn reflection(size: usize, number: usize) -> DMatrix<f64> {
     DMatrix::identity(size, size) - &v * v.transpose() * (2.0 / v.norm_squared())
 }
 
-/// Eigenvalues of the 1 × 1 and 2 × 2 diagonal blocks of a real Schur form. A block's eigenvalues are
-/// (a + d)/2 ± √(bc + ((a − d)/2)²): a conjugate pair, or two real ones where rounding left a block with real eigenvalues.
+/// Eigenvalues of the 1 × 1 and 2 × 2 diagonal blocks of a real Schur form. A block's eigenvalues are (a + d)/2 ± √(bc
+/// + ((a − d)/2)²): a conjugate pair, or two real ones where rounding left a block with real eigenvalues.
 fn of_quasi_triangular(triangular: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let size = triangular.nrows();
     let mut found = Vec::with_capacity(size);

@@ -4,9 +4,10 @@
 //!
 //! T = \[T₁₁, T₁₂; 0, T₂₂\],   T₁₁ R − R T₂₂ = T₁₂,   P = \[I, R; 0, 0\],
 //!
-//! with the spectral projector P of the group (Bai and Demmel 1993, <https://doi.org/10.1016/0024-3795(93)90286-W>; LAPACK's
-//! `trsen`). Rotations that reorder are orthogonal, so nothing is lost where eigenvalues of the group coalesce, which no
-//! basis of eigenvectors survives. What counts is the distance of the group from the other eigenvalues.
+//! with the spectral projector P of the group (Bai and Demmel 1993, <https://doi.org/10.1016/0024-3795(93)90286-W>;
+//! LAPACK's `trsen`). Rotations that reorder are orthogonal, so nothing is lost where eigenvalues of the group
+//! coalesce, which no basis of eigenvectors survives. What counts is the distance of the group from the other
+//! eigenvalues.
 
 use super::eigenvalues::SchurForm;
 use nalgebra::linalg::givens::GivensRotation;
@@ -28,9 +29,9 @@ pub struct Subspace {
     pub left: DMatrix<Complex<f64>>,
     /// T₁₁, upper triangular with the eigenvalues on its diagonal, in the order asked for.
     pub restricted: DMatrix<Complex<f64>>,
-    /// (1 + ‖R‖²) ‖T‖/sep(T₁₁, T₂₂) in Frobenius norms and for the balanced matrix: an estimate of how much rounding errors of A
-    /// are amplified in P, where ‖P‖₂² ≤ 1 + ‖R‖². The separation is the smallest ‖T₁₁X − XT₂₂‖/‖X‖: the distance of the
-    /// eigenvalues, or much less where those of the group coalesce.
+    /// (1 + ‖R‖²) ‖T‖/sep(T₁₁, T₂₂) in Frobenius norms and for the balanced matrix: an estimate of how much rounding
+    /// errors of A are amplified in P, where ‖P‖₂² ≤ 1 + ‖R‖². The separation is the smallest ‖T₁₁X − XT₂₂‖/‖X‖: the
+    /// distance of the eigenvalues, or much less where those of the group coalesce.
     pub amplification: f64,
 }
 
@@ -69,7 +70,8 @@ impl Subspace {
 }
 
 impl SchurForm {
-    /// The invariant subspace of the eigenvalues at `positions`, all distinct, in the order of [`SchurForm::eigenvalues`].
+    /// The invariant subspace of the eigenvalues at `positions`, all distinct, in the order of
+    /// [`SchurForm::eigenvalues`].
     ///
     /// # Panics
     ///
@@ -148,8 +150,8 @@ fn lead(
     triangular[(k + 1, k)] = Complex::new(0.0, 0.0);
 }
 
-/// An estimate of 1/sep(A, B), the norm of the solution operator of A X − X B = C, by solving for right-hand sides that have no
-/// structure: each has about 1/√dimension of its length in the worst direction.
+/// An estimate of 1/sep(A, B), the norm of the solution operator of A X − X B = C, by solving for right-hand sides that
+/// have no structure: each has about 1/√dimension of its length in the worst direction.
 fn inverse_separation(a: &DMatrix<Complex<f64>>, b: &DMatrix<Complex<f64>>) -> f64 {
     let (rows, columns) = (a.nrows(), b.nrows());
     let trial = |number: usize| {

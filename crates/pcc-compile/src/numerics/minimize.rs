@@ -1,8 +1,8 @@
 //! Local minimum of a smooth function of a few variables in a box.
 //!
 //! The quasi-Newton method of Broyden, Fletcher, Goldfarb and Shanno with the dense inverse Hessian and a backtracking
-//! line search (Nocedal and Wright 2006, algorithm 6.1, <https://doi.org/10.1007/978-0-387-40065-5>). The box becomes the
-//! whole space by xⱼ = centre + half width · tanh zⱼ, so no bound needs a case of its own.
+//! line search (Nocedal and Wright 2006, algorithm 6.1, <https://doi.org/10.1007/978-0-387-40065-5>). The box becomes
+//! the whole space by xⱼ = centre + half width · tanh zⱼ, so no bound needs a case of its own.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -48,8 +48,8 @@ impl Start {
 
 /// The lowest point found from `start` in the box of `bounds` (lower, upper).
 ///
-/// `evaluate` gives value and gradient at a point, or `None` where the function is not defined; such points are treated as
-/// infinitely high. The result is `start` itself if the function is not defined there.
+/// `evaluate` gives value and gradient at a point, or `None` where the function is not defined; such points are treated
+/// as infinitely high. The result is `start` itself if the function is not defined there.
 ///
 /// # Errors
 ///

@@ -5,9 +5,9 @@
 //! W₁₁ = L₁₁⁻¹, W₂₂ = L₂₂⁻¹, W₂₁ = −W₂₂L₂₁W₁₁, and A⁻¹ = WᵀW.
 //!
 //! Most operations are products of large blocks, for which libraries reach the speed of the processor; a fit inverts
-//! thousands of matrices with some hundred rows. The rows below a diagonal block are divided by it by substitution, which
-//! is backward stable: products with its inverse would be faster still, but fail on matrices near the limit of positive
-//! definiteness in double precision, which kernels are.
+//! thousands of matrices with some hundred rows. The rows below a diagonal block are divided by it by substitution,
+//! which is backward stable: products with its inverse would be faster still, but fail on matrices near the limit of
+//! positive definiteness in double precision, which kernels are.
 
 use nalgebra::{DMatrix, DMatrixViewMut};
 
@@ -96,8 +96,8 @@ fn factor_panel(panel: &mut DMatrixViewMut<'_, f64>, start: usize) -> Option<()>
     Some(())
 }
 
-/// L⁻¹ of the block of a lower triangular L from `start` to `end`, whose diagonal is not zero, by halves: into the same rows of
-/// `inverse`, which holds the columns from `start` on.
+/// L⁻¹ of the block of a lower triangular L from `start` to `end`, whose diagonal is not zero, by halves: into the same
+/// rows of `inverse`, which holds the columns from `start` on.
 fn invert_triangular(factor: &DMatrix<f64>, mut inverse: DMatrixViewMut<'_, f64>, start: usize, end: usize) {
     let size = end - start;
     if size <= SMALL {
@@ -122,7 +122,8 @@ fn invert_triangular(factor: &DMatrix<f64>, mut inverse: DMatrixViewMut<'_, f64>
     left.rows_mut(middle, end - middle).gemm(-1.0, &right.rows(middle, end - middle), &known, 0.0);
 }
 
-/// WᵀW of the block of a lower triangular W from `start` to `end`, by halves, as half of W is zero: on and below the diagonal.
+/// WᵀW of the block of a lower triangular W from `start` to `end`, by halves, as half of W is zero: on and below the
+/// diagonal.
 fn gram(factor: &DMatrix<f64>, start: usize, end: usize, product: &mut DMatrix<f64>) {
     let size = end - start;
     if size <= GRAM_SMALL {

@@ -153,8 +153,8 @@ impl ColumnQr {
         leverages
     }
 
-    /// Diagonal of (ΨᵀΨ)⁻¹ = R⁻¹R⁻ᵀ: the squared lengths of the rows of R⁻¹. The work grows with the cube of the number of
-    /// columns, so `proceed` is asked before each.
+    /// Diagonal of (ΨᵀΨ)⁻¹ = R⁻¹R⁻ᵀ: the squared lengths of the rows of R⁻¹. The work grows with the cube of the number
+    /// of columns, so `proceed` is asked before each.
     ///
     /// # Errors
     ///

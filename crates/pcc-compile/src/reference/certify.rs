@@ -14,8 +14,8 @@ const SCHEME: &str = "independent";
 /// Samples of the surrogate from which its own proportion is known: their interval is a tenth of a percent wide.
 const SURROGATE_SAMPLES: u64 = 1_000_000;
 
-/// Runs the model of a study, or of a campaign that keeps books of its runs, at `runs` fresh points and bounds its stability proportion from those at which `surrogate`
-/// disagrees ([`DiscordantCounts::bound`]).
+/// Runs the model of a study, or of a campaign that keeps books of its runs, at `runs` fresh points and bounds its
+/// stability proportion from those at which `surrogate` disagrees ([`DiscordantCounts::bound`]).
 ///
 /// The points belong to a purpose of their own: they are independent of the design and of all evaluation points,
 /// whatever the seeds. The certificate is to be added to those the surrogate has; choosing among seeds by their result

@@ -28,7 +28,8 @@ pub struct ComponentError {
 }
 
 impl ComponentError {
-    /// 100 |difference of the means|/|mean of the model|; 0 if both are zero but for rounding, `None` if only the model's is zero.
+    /// 100 |difference of the means|/|mean of the model|; 0 if both are zero but for rounding, `None` if only the
+    /// model's is zero.
     pub fn mean_error_percent(&self) -> Option<f64> {
         let is_zero = |moments: &Moments| moments.mean().abs() < CONSTANT * self.scale;
         if is_zero(&self.model) && is_zero(&self.surrogate) {
@@ -77,8 +78,8 @@ impl Comparison {
         Proportion { hits: self.stable_surrogate, samples: self.samples }.value()
     }
 
-    /// 100 |difference of the proportions|/proportion of the model; `None` if the model is never stable and the surrogate
-    /// sometimes is.
+    /// 100 |difference of the proportions|/proportion of the model; `None` if the model is never stable and the
+    /// surrogate sometimes is.
     pub fn relative_error_percent(&self) -> Option<f64> {
         relative_error_percent(self.stable_surrogate as f64, self.stable_model as f64)
     }
@@ -172,8 +173,8 @@ impl Comparison {
 /// Real or imaginary part.
 type Part = fn(&Complex<f64>) -> f64;
 
-/// Re λ and Im λ of every mode at so many points; `lambda(position, i)` is the model's eigenvalue of the mode at this position of
-/// `modes`, at point i.
+/// Re λ and Im λ of every mode at so many points; `lambda(position, i)` is the model's eigenvalue of the mode at this
+/// position of `modes`, at point i.
 pub(super) fn mode_errors(
     modes: &[usize],
     surrogate: &Surrogate,

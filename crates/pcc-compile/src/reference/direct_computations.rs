@@ -77,7 +77,8 @@ pub fn check_problem(surrogate: &Surrogate, study: &Study) -> Result<(), Referen
 }
 
 /// Runs the model at samples 0 … `samples` − 1 of the study's input space for `purpose`, for evaluation the points that
-/// [`pcc_evaluate::evaluation::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized points and runs.
+/// [`pcc_evaluate::evaluation::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized
+/// points and runs.
 pub(super) fn for_each_chunk(
     campaign: Campaign<'_>,
     samples: u64,

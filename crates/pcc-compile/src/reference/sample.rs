@@ -16,7 +16,8 @@ use pcc_evaluate::surrogate::Surrogate;
 const CHUNK: usize = 4096;
 const CHUNKS_IN_FLIGHT: usize = 64;
 
-/// What the model answers at samples 0 … n − 1 of a study's input space: the points of [`pcc_evaluate::evaluation::monte_carlo`].
+/// What the model answers at samples 0 … n − 1 of a study's input space: the points of
+/// [`pcc_evaluate::evaluation::monte_carlo`].
 #[derive(Debug, Clone)]
 pub struct ModelSample<'a> {
     study: &'a Study,
@@ -111,12 +112,13 @@ impl<'a> ModelSample<'a> {
         Ok(all)
     }
 
-    /// Compares a surrogate of the same model and inputs with the model on all points: stability, and the modes both have.
+    /// Compares a surrogate of the same model and inputs with the model on all points: stability, and the modes both
+    /// have.
     ///
     /// # Errors
     ///
-    /// [`ReferenceError::OtherProblem`] if the surrogate has other inputs; what else it was built for is not asked, so that
-    /// surrogates of other targets and modes can be judged. [`ReferenceError::NotFinite`].
+    /// [`ReferenceError::OtherProblem`] if the surrogate has other inputs; what else it was built for is not asked, so
+    /// that surrogates of other targets and modes can be judged. [`ReferenceError::NotFinite`].
     pub fn compare(&self, surrogate: &Surrogate) -> Result<Comparison, ReferenceError> {
         let plan = Plan::new(surrogate);
         let mut comparison = Comparison::new(self.len() as u64);

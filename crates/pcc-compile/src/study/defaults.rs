@@ -27,8 +27,9 @@ pub(super) const WORK_FOLDER: &str = "runs";
 /// Of a program that has not begun to answer otherwise.
 pub(super) const VERSION: &str = "1";
 
-/// Where the paper's table stops, ten times as many for multi-element expansions, which spend runs on split parents, too; for
-/// invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000 values, or 3000 values and derivatives.
+/// Where the paper's table stops, ten times as many for multi-element expansions, which spend runs on split parents,
+/// too; for invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000 values, or 3000 values
+/// and derivatives.
 pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: &FitMethod) -> usize {
     match (method.profile().design, target) {
         (Design::QuadraturePerElement, _) => 10 * PAPERS_LIMIT as usize,
@@ -38,8 +39,8 @@ pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: 
     }
 }
 
-/// For invariants: a tenth of a percent of the proportion, about what the sampling of a million points leaves open; with
-/// derivatives a fifth of that costs few runs more. Stepwise regression does not get that far.
+/// For invariants: a tenth of a percent of the proportion, about what the sampling of a million points leaves open;
+/// with derivatives a fifth of that costs few runs more. Stepwise regression does not get that far.
 pub(super) fn proportion_tolerance(derivatives: bool, method: &str) -> f64 {
     if derivatives && method != "stepwise" { 2e-4 } else { 1e-3 }
 }
@@ -62,7 +63,8 @@ pub(super) fn initial(target: Target, inputs: usize, derivatives: bool) -> usize
     }
 }
 
-/// Runs of each enrichment: as many again, but with derivatives half as many more. A first level has nothing to be judged by.
+/// Runs of each enrichment: as many again, but with derivatives half as many more. A first level has nothing to be
+/// judged by.
 pub(super) fn step(target: Target, inputs: usize, derivatives: bool) -> usize {
     if target != Target::Eigenvalues && derivatives {
         (3 * inputs).max(5)

@@ -185,7 +185,8 @@ impl Lines<'_> {
         StudyError::UnknownFitKey { place: self.place(format!("fit.{name}"), value), known: known.join(", ") }
     }
 
-    /// The number of model runs that a method without a growing design takes, of one element for several; `None` for the others.
+    /// The number of model runs that a method without a growing design takes, of one element for several; `None` for
+    /// the others.
     pub(super) fn fixed_runs(
         &self,
         fit: &FitSettings,

@@ -45,8 +45,8 @@ pub(super) fn model_hash(study: &Study) -> [u8; 32] {
     sha256_bytes(text.as_bytes())
 }
 
-/// The model as text, one fact a line: for the clutch with the nominal values that the study left alone; numbers by their shortest
-/// exact decimal, what users wrote as they wrote it.
+/// The model as text, one fact a line: for the clutch with the nominal values that the study left alone; numbers by
+/// their shortest exact decimal, what users wrote as they wrote it.
 fn model(study: &Study) -> String {
     let mut text = format!("model {}\n", study.model.kind());
     match &study.model {
@@ -105,7 +105,8 @@ fn matrices(text: &mut String, description: &Description) {
     }
 }
 
-/// What has one true answer, as text: the model, its inputs in the order that gives them meaning, and what of the spectrum is asked.
+/// What has one true answer, as text: the model, its inputs in the order that gives them meaning, and what of the
+/// spectrum is asked.
 fn problem(study: &Study) -> String {
     let mut text = model(study);
     for input in study.inputs.inputs() {

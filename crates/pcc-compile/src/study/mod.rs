@@ -112,8 +112,8 @@ impl Study {
         self.fit.use_derivatives(self.spectrum.target, &self.model)
     }
 
-    /// Hash of the model: its kind, its constants and the names of its inputs, not their distributions. Runs of models with
-    /// the same hash at the same point have the same answer. SHA-256.
+    /// Hash of the model: its kind, its constants and the names of its inputs, not their distributions. Runs of models
+    /// with the same hash at the same point have the same answer. SHA-256.
     pub fn model_hash(&self) -> [u8; 32] {
         identity::model_hash(self)
     }

@@ -104,8 +104,8 @@ impl Lines<'_> {
         })
     }
 
-    /// Checks the name of an input or constant. The clutch has parameters of its own; elsewhere names are columns, keys and parts of
-    /// expressions, so they hold nothing that any of these gives a meaning.
+    /// Checks the name of an input or constant. The clutch has parameters of its own; elsewhere names are columns, keys
+    /// and parts of expressions, so they hold nothing that any of these gives a meaning.
     pub(super) fn parameter_of_kind<T>(
         &self,
         kind: Kind,

@@ -161,7 +161,8 @@ impl DesignKind {
 pub struct DesignSettings {
     /// How points are chosen.
     pub kind: DesignKind,
-    /// Number of points of the first level, at least 2; for methods that fix it, of the whole design, or of each element.
+    /// Number of points of the first level, at least 2; for methods that fix it, of the whole design, or of each
+    /// element.
     pub initial: usize,
     /// Points added by each enrichment, at least 1.
     pub step: usize,

@@ -13,12 +13,12 @@ pub const MAJOR: u16 = 1;
 /// * 0: eigenvalue outputs, uniform inputs, one element.
 /// * 1: clusters, with modes in the order of their frequencies; the mode of a cluster with the lowest Im λ comes first,
 ///   equal frequencies within 10⁻¹² by Re λ.
-/// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why the search
-///   for an expansion ended that full expansions have.
+/// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
+///   the search for an expansion ended that full expansions have.
 pub const MINOR: u16 = 2;
 
-/// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers read
-/// what they can.
+/// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
+/// read what they can.
 pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     let is_full = |expansion: &Expansion| {
         matches!(expansion.stop, StopReason::GivenDegree | StopReason::Settled | StopReason::Limited)

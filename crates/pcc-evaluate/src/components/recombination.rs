@@ -9,7 +9,8 @@ pub enum OutputKind {
     /// Two components, Re λ and Im λ of one mode.
     Eigenvalue,
     /// 2k components for k modes: Re and Im of the mean s of the eigenvalues, then Re and Im of the coefficients
-    /// c_{k−2}, …, c_0 of z^k + c_{k−2} z^{k−2} + … + c_0, whose roots are λ − s. They are smooth where eigenvalues coalesce.
+    /// c_{k−2}, …, c_0 of z^k + c_{k−2} z^{k−2} + … + c_0, whose roots are λ − s. They are smooth where eigenvalues
+    /// coalesce.
     Cluster,
 }
 
@@ -59,8 +60,8 @@ pub struct Output {
 }
 
 impl Output {
-    /// Appends the eigenvalues of this output's modes, by frequency, to `eigenvalues`, given the values of all components
-    /// by id.
+    /// Appends the eigenvalues of this output's modes, by frequency, to `eigenvalues`, given the values of all
+    /// components by id.
     #[inline]
     pub fn recombine(&self, values: &[f64], eigenvalues: &mut Vec<Complex<f64>>) {
         let part = |k: usize| Complex::new(values[self.components[2 * k].id], values[self.components[2 * k + 1].id]);

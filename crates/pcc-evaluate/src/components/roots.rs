@@ -16,8 +16,8 @@
 
 use num_complex::Complex;
 
-/// Sweeps over all roots. Simple roots of low degree take five or six. The error of an m-fold root shrinks by
-/// (m − 1)/(m + 1) per sweep until it is ε^(1/m), which takes 16 to 18 sweeps whatever m is. The rest is for polynomials
+/// Sweeps over all roots. Simple roots of low degree take five or six. The error of an m-fold root shrinks by (m −
+/// 1)/(m + 1) per sweep until it is ε^(1/m), which takes 16 to 18 sweeps whatever m is. The rest is for polynomials
 /// that start badly; what has not settled by then is taken as it is.
 const MAX_SWEEPS: usize = 60;
 

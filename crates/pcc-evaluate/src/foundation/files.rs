@@ -19,8 +19,8 @@ pub struct FileError {
     pub message: String,
 }
 
-/// Writes `path` through a temporary file beside it: synced, renamed over the old file, folder synced. A reader sees the
-/// old content or the new, never a part.
+/// Writes `path` through a temporary file beside it: synced, renamed over the old file, folder synced. A reader sees
+/// the old content or the new, never a part.
 ///
 /// # Errors
 ///

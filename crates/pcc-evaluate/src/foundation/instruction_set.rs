@@ -37,8 +37,8 @@ enum Kind {
 }
 
 impl InstructionSet {
-    /// Names of all sets, whether this processor has them or not: AVX-512 (F, BW, CD, DQ and VL), AVX2 with FMA, NEON, and what
-    /// every processor has.
+    /// Names of all sets, whether this processor has them or not: AVX-512 (F, BW, CD, DQ and VL), AVX2 with FMA, NEON,
+    /// and what every processor has.
     pub const NAMES: [&str; 4] = ["avx512", "avx2", "neon", "portable"];
 
     /// The sets that this processor has, the fastest first.

@@ -7,7 +7,8 @@ use std::error::Error;
 #[error("interrupted")]
 pub struct Interrupted;
 
-/// Whether the user asked to stop, and that is why something failed: whether [`Interrupted`] is among the causes of `error`.
+/// Whether the user asked to stop, and that is why something failed: whether [`Interrupted`] is among the causes of
+/// `error`.
 pub fn is_interruption(error: &(dyn Error + 'static)) -> bool {
     let mut cause = Some(error);
     while let Some(error) = cause {

@@ -9,7 +9,8 @@ use std::time::Duration;
 /// How often waiting work is watched.
 const WATCH_INTERVAL: Duration = Duration::from_millis(50);
 
-/// `work(0)`, `work(1)`, … `work(count − 1)` in parallel, results in order; or the error of the smallest number that fails.
+/// `work(0)`, `work(1)`, … `work(count − 1)` in parallel, results in order; or the error of the smallest number that
+/// fails.
 ///
 /// Numbers beyond a failed one are no longer started, so that an expensive model stops soon; those before it are, so
 /// that the error is the same for any number of threads.
@@ -44,9 +45,9 @@ pub fn try_map<T: Send, E: Send>(count: usize, work: impl Fn(usize) -> Result<T,
     results.into_iter().flatten().collect()
 }
 
-/// The same for work that waits for other processes instead of computing: on up to `jobs` threads of its own, however many
-/// processors there are. Numbers are started in order; after a failure no further one is. Meanwhile the caller's thread calls
-/// `watch` again and again.
+/// The same for work that waits for other processes instead of computing: on up to `jobs` threads of its own, however
+/// many processors there are. Numbers are started in order; after a failure no further one is. Meanwhile the caller's
+/// thread calls `watch` again and again.
 ///
 /// # Errors
 ///

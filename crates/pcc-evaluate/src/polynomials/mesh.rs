@@ -1,8 +1,8 @@
 //! A box divided into elements: axis-parallel boxes of the standardized variables, found by a tree of splits.
 //!
 //! Multi-element expansions have one set of polynomials per element, in the local variables (ξ − center)/half width
-//! (equation 10 of the paper). A global expansion has one element, the whole box \[−1, 1\]ʳ. All inputs are uniform, so the
-//! probability of an element is its volume over 2ʳ.
+//! (equation 10 of the paper). A global expansion has one element, the whole box \[−1, 1\]ʳ. All inputs are uniform, so
+//! the probability of an element is its volume over 2ʳ.
 
 use thiserror::Error;
 
@@ -174,8 +174,8 @@ impl Mesh {
         &self.splits
     }
 
-    /// Position of the element that holds the standardized point ξ, by one comparison per level of the tree. Points outside the
-    /// box belong to an element at its boundary.
+    /// Position of the element that holds the standardized point ξ, by one comparison per level of the tree. Points
+    /// outside the box belong to an element at its boundary.
     #[inline]
     pub fn locate(&self, standardized: &[f64]) -> usize {
         let Some(mut split) = self.splits.first() else { return 0 };
@@ -193,8 +193,8 @@ impl Mesh {
         self.elements[element].half_width(input) >= NARROWEST_SIDE
     }
 
-    /// Halves an element along each of `inputs`, and returns the positions of its 2ᵏ parts: the first takes the element's own, the
-    /// others follow the last.
+    /// Halves an element along each of `inputs`, and returns the positions of its 2ᵏ parts: the first takes the
+    /// element's own, the others follow the last.
     pub fn halve(&mut self, element: usize, inputs: &[usize]) -> Vec<usize> {
         let mut parts = vec![element];
         for &input in inputs {

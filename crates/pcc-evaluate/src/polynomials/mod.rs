@@ -1,5 +1,5 @@
-//! Polynomials that are orthonormal under a probability density: recurrences, their Gauss rules, the sets of multi-indices that
-//! span spaces of them, and the elements on which they are local.
+//! Polynomials that are orthonormal under a probability density: recurrences, their Gauss rules, the sets of
+//! multi-indices that span spaces of them, and the elements on which they are local.
 
 mod index_set;
 mod mesh;

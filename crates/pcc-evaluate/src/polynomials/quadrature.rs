@@ -44,8 +44,8 @@ pub fn gauss(diagonal: &[f64], off_diagonal: &[f64]) -> (Vec<f64>, Vec<f64>) {
 /// Sweeps per node after which what is reached has to do: two or three are usual.
 const MOST_SWEEPS: usize = 60;
 
-/// One implicit QL step with Wilkinson's shift on rows `start` to `end` of the Jacobi matrix: a rotation at the lower end makes
-/// an entry outside the three diagonals, which the other rotations move up and out.
+/// One implicit QL step with Wilkinson's shift on rows `start` to `end` of the Jacobi matrix: a rotation at the lower
+/// end makes an entry outside the three diagonals, which the other rotations move up and out.
 fn sweep(start: usize, end: usize, nodes: &mut [f64], coupling: &mut [f64], first: &mut [f64]) {
     let half_gap = (nodes[start + 1] - nodes[start]) / (2.0 * coupling[start]);
     let shift = nodes[start] - coupling[start] / (half_gap + half_gap.hypot(1.0).copysign(half_gap));

@@ -31,8 +31,8 @@ impl Family {
 
 /// Coefficients of √b_{k+1} φ_{k+1}(x) = (x − a_k) φ_k(x) − √b_k φ_{k−1}(x) with φ_0 = 1.
 ///
-/// The polynomials have unit variance: E\[φ_j φ_k\] = δ_jk. So the mean of an expansion is its first coefficient and its
-/// variance the sum of the other squares.
+/// The polynomials have unit variance: E\[φ_j φ_k\] = δ_jk. So the mean of an expansion is its first coefficient and
+/// its variance the sum of the other squares.
 ///
 /// # Examples
 ///

@@ -10,8 +10,8 @@ use crate::shard_file::Part;
 use crate::surrogate::Surrogate;
 use std::time::Instant;
 
-/// Samples of the surrogate whose indices are estimated by pick-freeze: they cost r + 2 evaluations each, and their intervals are
-/// narrow enough.
+/// Samples of the surrogate whose indices are estimated by pick-freeze: they cost r + 2 evaluations each, and their
+/// intervals are narrow enough.
 const SENSITIVITY_SAMPLES: u64 = 16_384;
 
 /// A surrogate, what was asked of it, and what it answers.
@@ -64,12 +64,13 @@ impl<'s> Session<'s> {
         Ok(Self { surrogate, question, survey, critical })
     }
 
-    /// Samples the surrogate on the current rayon thread pool, then finds what else was asked for. After an interruption the answer
-    /// has what there was by then.
+    /// Samples the surrogate on the current rayon thread pool, then finds what else was asked for. After an
+    /// interruption the answer has what there was by then.
     ///
     /// # Errors
     ///
-    /// [`EvalError::NotFinite`] names a point; [`EvalError::Interrupted`] if the user asked to stop before there were samples.
+    /// [`EvalError::NotFinite`] names a point; [`EvalError::Interrupted`] if the user asked to stop before there were
+    /// samples.
     pub fn run(&self, observer: &dyn Observer) -> Result<Evaluation<'s>, EvalError> {
         let start = Instant::now();
         let (Surveyed::Complete(findings) | Surveyed::Interrupted(findings)) =
@@ -138,7 +139,8 @@ fn in_time<T>(result: Result<T, EvalError>) -> Result<Option<T>, EvalError> {
 }
 
 impl<'s> Evaluation<'s> {
-    /// What the merged parts `whole`, put together from `parts` of them, say: what one evaluation of all samples would have said.
+    /// What the merged parts `whole`, put together from `parts` of them, say: what one evaluation of all samples would
+    /// have said.
     ///
     /// # Errors
     ///

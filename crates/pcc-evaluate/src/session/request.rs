@@ -18,7 +18,9 @@ pub struct HistogramRequest {
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::{artifact, evaluation::Condition, foundation::{InstructionSet, Silent}, session::{Request, Session}};
+/// use pcc_evaluate::foundation::{InstructionSet, Silent};
+/// use pcc_evaluate::session::{Request, Session};
+/// use pcc_evaluate::{artifact, evaluation::Condition};
 /// let surrogate = artifact::decode(include_bytes!("../../../../surrogates/clutch-r2.pcc"))?.surrogate;
 /// let little_friction = Condition { input: "mu".to_owned(), lower: 0.0, upper: 0.1 };
 /// let request = Request { conditions: vec![little_friction], ..Request::plain(10_000, 1) };

@@ -1,13 +1,13 @@
 //! Parts of an evaluation, kept in files until all are there.
 //!
-//! A part says what was found in a range of chunks of a question's samples, and holds the question and the surrogate with
-//! it: parts can be computed anywhere, in any order, and [`merge`] needs nothing but the parts. Parts of the same question are merged
-//! to the same bytes, whatever the samples were divided into.
+//! A part says what was found in a range of chunks of a question's samples, and holds the question and the surrogate
+//! with it: parts can be computed anywhere, in any order, and [`merge`] needs nothing but the parts. Parts of the same
+//! question are merged to the same bytes, whatever the samples were divided into.
 //!
 //! # File format 1
 //!
-//! Two lines of JSON. The first is `{"pcc_part": 1, "length": …, "sha256": …}` with length in bytes and SHA-256 of the second, which
-//! holds the version of pcc, the surrogate as in a JSON surrogate file, the question and the findings.
+//! Two lines of JSON. The first is `{"pcc_part": 1, "length": …, "sha256": …}` with length in bytes and SHA-256 of the
+//! second, which holds the version of pcc, the surrogate as in a JSON surrogate file, the question and the findings.
 
 use crate::artifact::{self, Format, ReadError, WriteError};
 use crate::evaluation::{Findings, Question, Survey, SurveyError};
@@ -292,8 +292,8 @@ fn checked_body(bytes: &[u8]) -> Result<&[u8], PartError> {
 ///
 /// # Errors
 ///
-/// [`PartError::Empty`], [`PartError::Different`], [`PartError::Overlap`], and [`PartError::Gap`] between parts. Whether the first and the
-/// last chunks are there is for [`Part::is_complete`] to say.
+/// [`PartError::Empty`], [`PartError::Different`], [`PartError::Overlap`], and [`PartError::Gap`] between parts.
+/// Whether the first and the last chunks are there is for [`Part::is_complete`] to say.
 pub fn merge(mut parts: Vec<(String, Part)>) -> Result<Part, PartError> {
     parts.sort_by_key(|(_, part)| (part.findings.chunks().start, part.findings.chunks().end));
     let mut parts = parts.into_iter();

@@ -1,15 +1,15 @@
 //! Whether two builds of one study agree across machines.
 //!
 //! Last-bit differences between processors change the coefficients of a stepwise fit by next to nothing. A fit whose
-//! settings come out of a search can take another of several settings that are equally good; it agrees if it predicts the
-//! same within its own leave-one-out error.
+//! settings come out of a search can take another of several settings that are equally good; it agrees if it predicts
+//! the same within its own leave-one-out error.
 
 use super::{Expansion, Surrogate};
 use thiserror::Error;
 
-/// Largest difference of coefficients between machines, relative to the largest coefficient of the expansion besides the
-/// mean. Matrix products choose their kernels by processor; a build amplifies such last-bit differences by the condition
-/// of its regression, below 10⁴ for N ≥ 2 card(A).
+/// Largest difference of coefficients between machines, relative to the largest coefficient of the expansion besides
+/// the mean. Matrix products choose their kernels by processor; a build amplifies such last-bit differences by the
+/// condition of its regression, below 10⁴ for N ≥ 2 card(A).
 pub const PORTABLE_TOLERANCE: f64 = 1e-9;
 
 /// Share of a mean of which [`PORTABLE_TOLERANCE`] is some hundred roundings.
@@ -97,8 +97,8 @@ impl Surrogate {
         Ok(())
     }
 
-    /// What differences of coefficients are relative to: the largest besides the mean in any element, but not less than what
-    /// rounding of the mean makes of it.
+    /// What differences of coefficients are relative to: the largest besides the mean in any element, but not less than
+    /// what rounding of the mean makes of it.
     fn coefficient_scale(&self, component: usize) -> f64 {
         let largest = |part: &Expansion| part.coefficients.iter().skip(1).fold(0f64, |largest, c| c.abs().max(largest));
         let means = self.expansions_of(component).map(|part| MEAN_ROUNDING * part.mean().abs());

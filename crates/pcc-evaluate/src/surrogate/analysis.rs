@@ -21,8 +21,8 @@ impl Expansion {
 }
 
 impl Surrogate {
-    /// Mean and variance of each component by id, from the coefficients, in the component's own unit: Σ_e w_e m_e and Σ_e w_e (v_e +
-    /// (m_e − m)²) over elements of probability w_e, mean m_e and variance v_e.
+    /// Mean and variance of each component by id, from the coefficients, in the component's own unit: Σ_e w_e m_e and
+    /// Σ_e w_e (v_e + (m_e − m)²) over elements of probability w_e, mean m_e and variance v_e.
     pub fn moments(&self) -> Vec<(f64, f64)> {
         let weights = || self.mesh.elements().iter().map(|element| element.weight);
         let moments = |component: &crate::components::Component| {
@@ -35,8 +35,8 @@ impl Surrogate {
         self.components().into_iter().map(moments).collect()
     }
 
-    /// How well a component is fitted over all elements: degree and terms are the most of any element, R² and S² the means by
-    /// probability.
+    /// How well a component is fitted over all elements: degree and terms are the most of any element, R² and S² the
+    /// means by probability.
     pub fn fit_of(&self, component: usize) -> FitQuality {
         let parts = || self.expansions_of(component);
         let mean = |share: fn(&Expansion) -> Option<f64>| -> Option<f64> {

@@ -20,8 +20,9 @@ use crate::probability::inputs::InputSpace;
 
 /// A surrogate model of the eigenvalues of a system with uncertain parameters.
 ///
-/// Component k is center + scale · Σ_α c_α ψ_α with its expansion in the element that holds the point, at the local variables
-/// there; outputs say how components become eigenvalues. A global expansion has one element, whose local variables are ξ.
+/// Component k is center + scale · Σ_α c_α ψ_α with its expansion in the element that holds the point, at the local
+/// variables there; outputs say how components become eigenvalues. A global expansion has one element, whose local
+/// variables are ξ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surrogate {
     /// Where it comes from.

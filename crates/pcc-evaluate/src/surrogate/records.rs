@@ -15,8 +15,8 @@ pub struct Provenance {
     pub study_hash: String,
 }
 
-/// A polynomial chaos expansion Σ_α c_α ψ_α of one component in one element, in its local variables. Errors are relative to the
-/// variance over all elements, so that their mean with the elements' weights is that of the whole.
+/// A polynomial chaos expansion Σ_α c_α ψ_α of one component in one element, in its local variables. Errors are
+/// relative to the variance over all elements, so that their mean with the elements' weights is that of the whole.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
     /// A, in canonical order.
@@ -140,8 +140,8 @@ pub struct Decision {
     /// Quantiles of (max Re λ of the model) − (its leave-one-out prediction, all components together), in 1/s; empty if
     /// undetermined.
     pub max_re_residuals: Vec<Quantile>,
-    /// Estimated relative error of the stability proportion, as a fraction; of quadratures, which leave no point out, the part
-    /// alone that modes the surrogate does not carry have in it, by the share of the nodes that they decide.
+    /// Estimated relative error of the stability proportion, as a fraction; of quadratures, which leave no point out,
+    /// the part alone that modes the surrogate does not carry have in it, by the share of the nodes that they decide.
     pub proportion_error: Option<f64>,
 }
 
@@ -149,8 +149,8 @@ impl Decision {
     /// Probability with which max Re λ of the model minus its prediction lies between the shifts of the band.
     pub const BAND_LEVEL: f64 = 0.95;
 
-    /// The quantiles of the residuals of max Re λ, in 1/s, that hold [`Decision::BAND_LEVEL`] between them; zero if they are
-    /// undetermined.
+    /// The quantiles of the residuals of max Re λ, in 1/s, that hold [`Decision::BAND_LEVEL`] between them; zero if
+    /// they are undetermined.
     pub fn band_shifts(&self) -> [f64; 2] {
         [0.5 - 0.5 * Self::BAND_LEVEL, 0.5 + 0.5 * Self::BAND_LEVEL].map(|level| {
             let same = |quantile: &&Quantile| (quantile.level - level).abs() < 1e-9;

@@ -1,13 +1,16 @@
-//! Sobol' indices of components from their coefficients (Sobol' 1993; Sudret 2008, <https://doi.org/10.1016/j.ress.2007.04.002>).
+//! Sobol' indices of components from their coefficients (Sobol' 1993; Sudret 2008,
+//! <https://doi.org/10.1016/j.ress.2007.04.002>).
 //!
-//! First order S_j = Var E\[f | ξ_j\]/V and total T_j = 1 − Var E\[f | ξ_~j\]/V, where ~j is all inputs but j. For one expansion
-//! in orthonormal polynomials both are sums of squares. On elements they are not: E\[f | ξ_u\] adds up the elements that hold ξ_u,
+//! First order S_j = Var E\[f | ξ_j\]/V and total T_j = 1 − Var E\[f | ξ_~j\]/V, where ~j is all inputs but j. For one
+//! expansion in orthonormal polynomials both are sums of squares. On elements they are not: E\[f | ξ_u\] adds up the
+//! elements that hold ξ_u,
 //!
 //! E\[f | ξ_u\] = Σ_e w_e^~u Σ_{α: α_~u = 0} c_α^e ψ_α(ζ_u^e),
 //!
-//! with w_e^~u the probability of the element's sides outside u. With the mean taken off every c_0^e first, its variance is a sum
-//! over pairs of elements whose sides in u overlap, of integrals of products of polynomials over the overlaps, one input at a time:
-//! exact by a Gauss rule. For u = {j} all elements with the same side are added up before.
+//! with w_e^~u the probability of the element's sides outside u. With the mean taken off every c_0^e first, its
+//! variance is a sum over pairs of elements whose sides in u overlap, of integrals of products of polynomials over the
+//! overlaps, one input at a time: exact by a Gauss rule. For u = {j} all elements with the same side are added up
+//! before.
 
 use super::{Expansion, Surrogate};
 use crate::polynomials::{Element, Recurrence, gauss};
@@ -32,8 +35,8 @@ pub struct SobolIndices {
 }
 
 impl Expansion {
-    /// Sobol' indices of a global expansion, Σ c_α² over the α that are non-zero in an input alone, and over those that are
-    /// non-zero in it, over the variance; `None` if the variance is zero.
+    /// Sobol' indices of a global expansion, Σ c_α² over the α that are non-zero in an input alone, and over those that
+    /// are non-zero in it, over the variance; `None` if the variance is zero.
     pub fn sobol_indices(&self) -> Option<SobolIndices> {
         let variance = self.variance();
         let inputs = self.indices.first()?.len();
@@ -49,8 +52,8 @@ impl Expansion {
 }
 
 impl Surrogate {
-    /// Sobol' indices of every component by id; `None` for those that do not vary. All `None` for meshes that no study gives, of
-    /// more than ten thousand elements, a degree above 100, or millions of overlaps.
+    /// Sobol' indices of every component by id; `None` for those that do not vary. All `None` for meshes that no study
+    /// gives, of more than ten thousand elements, a degree above 100, or millions of overlaps.
     pub fn sobol_indices(&self) -> Vec<Option<SobolIndices>> {
         let components = 0..self.component_count();
         if self.mesh.elements().len() == 1 {

@@ -1,15 +1,16 @@
 //! The journal of model runs: what an expensive model has answered is never lost and never asked for again.
 //!
-//! A journal is a file that only grows. It begins with a magic number and a version, then one [`Record`] follows the other, each
-//! with its length and checksum. A record is on the disk (`fdatasync`) before its run counts, so a build that dies, whatever kills it, leaves
-//! all runs that counted and at most one torn record behind, which is cut off when the journal is opened again. Should
-//! bytes in the middle have been damaged later, the sound records after them are found and kept.
+//! A journal is a file that only grows. It begins with a magic number and a version, then one [`Record`] follows the
+//! other, each with its length and checksum. A record is on the disk (`fdatasync`) before its run counts, so a build
+//! that dies, whatever kills it, leaves all runs that counted and at most one torn record behind, which is cut off when
+//! the journal is opened again. Should bytes in the middle have been damaged later, the sound records after them are
+//! found and kept.
 //!
-//! Records name the model by a hash and the point by the bits of its inputs: a study that changes its distributions or its fit, not its
-//! model, finds the runs that it has in common with the former one.
+//! Records name the model by a hash and the point by the bits of its inputs: a study that changes its distributions or
+//! its fit, not its model, finds the runs that it has in common with the former one.
 //!
-//! An advisory lock on the file keeps two builds from one journal. It belongs to the open file, so it ends with the process
-//! that holds it and cannot become stale.
+//! An advisory lock on the file keeps two builds from one journal. It belongs to the open file, so it ends with the
+//! process that holds it and cannot become stale.
 
 mod record;
 
@@ -142,8 +143,8 @@ impl Journal {
         Ok((Self { path: path.to_owned(), file }, contents))
     }
 
-    /// The records of a journal, without opening it for more: also while a build writes it. A journal that does not exist has
-    /// none.
+    /// The records of a journal, without opening it for more: also while a build writes it. A journal that does not
+    /// exist has none.
     ///
     /// # Errors
     ///
@@ -215,8 +216,8 @@ impl Tail {
     }
 }
 
-/// Opens the file and locks it. Another process may remove its journal between the two: then the file that is locked is no longer
-/// the one at the path, and what is written there would be lost.
+/// Opens the file and locks it. Another process may remove its journal between the two: then the file that is locked is
+/// no longer the one at the path, and what is written there would be lost.
 fn locked(path: &Path) -> Result<File, JournalError> {
     let failed = |cause: io::Error| io_error(path, &cause);
     loop {

@@ -1,7 +1,7 @@
 //! One record of a journal as bytes.
 //!
-//! A frame is the length of its body (u32), the CRC-32 of length and body (u32), and the body; all numbers are little-endian,
-//! floating-point numbers are their bits. The body:
+//! A frame is the length of its body (u32), the CRC-32 of length and body (u32), and the body; all numbers are
+//! little-endian, floating-point numbers are their bits. The body:
 //!
 //! | bytes | field |
 //! |---|---|

@@ -1,8 +1,9 @@
-//! Nested Latin hypercube designs, after Wang (2003), <https://doi.org/10.1115/1.1561044>, and Blatman and Sudret (2010).
+//! Nested Latin hypercube designs, after Wang (2003), <https://doi.org/10.1115/1.1561044>, and Blatman and Sudret
+//! (2010).
 //!
 //! A Latin hypercube of N points has one point in each of N equal strata of every input. A design grows from N to N′
-//! points by dividing every input into N′ strata, of which the old points occupy at most N; each new point falls into an
-//! empty one, in every input. If the design was a Latin hypercube and N divides N′, no two old points share a finer
+//! points by dividing every input into N′ strata, of which the old points occupy at most N; each new point falls into
+//! an empty one, in every input. If the design was a Latin hypercube and N divides N′, no two old points share a finer
 //! stratum and the result is a Latin hypercube again. No point is ever dropped, so no model run is lost.
 //!
 //! The strata of new points are paired at random; a design may then spread its new points by exchanging coordinates.

@@ -1,7 +1,7 @@
 //! Tensor products of Gauss rules: all combinations of the nodes of one rule per input.
 //!
-//! With p + 1 nodes per input the rule integrates polynomials of degree 2p + 1 in each input exactly, so polynomials of degree
-//! up to p are orthonormal on the nodes, too. Nodes are made from their numbers; none is stored.
+//! With p + 1 nodes per input the rule integrates polynomials of degree 2p + 1 in each input exactly, so polynomials of
+//! degree up to p are orthonormal on the nodes, too. Nodes are made from their numbers; none is stored.
 
 use super::samples::Samples;
 use pcc_evaluate::polynomials::{Recurrence, gauss};

@@ -1,8 +1,8 @@
 //! The better of two fits, component by component.
 //!
 //! The weighted minimum-norm fit suits functions that depend smoothly on most inputs, matching pursuit those that have
-//! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by folds,
-//! because its leave-one-out error does not see the selection of terms.
+//! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by
+//! folds, because its leave-one-out error does not see the selection of terms.
 
 use super::method::{ComponentFit, Entry, FitMethod, FitSize, MAX_DEGREE, Profile, S2_TARGET, Smooth, Solver};
 use super::omp::Candidates;
@@ -69,8 +69,8 @@ impl Solver for Ready<'_> {
     }
 }
 
-/// Fits one component: `response.values[i]` belongs to point i of `tables`. Returns the fit, the name of its method, and
-/// what the next design starts from.
+/// Fits one component: `response.values[i]` belongs to point i of `tables`. Returns the fit, the name of its method,
+/// and what the next design starts from.
 ///
 /// # Errors
 ///

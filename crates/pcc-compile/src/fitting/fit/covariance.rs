@@ -7,8 +7,8 @@ use nalgebra::DMatrix;
 /// The matrix K of a prior for some equations, with what its derivatives need.
 ///
 /// The block of K for derivatives by input A in its rows and by input B in its columns (0: values) is the product over
-/// inputs j of sums Σ_n v w_jⁿ f_n g_n, where f is φ′_n if j = A, else φ_n, and g accordingly with B; where neither is φ′,
-/// the degree 0 adds one.
+/// inputs j of sums Σ_n v w_jⁿ f_n g_n, where f is φ′_n if j = A, else φ_n, and g accordingly with B; where neither is
+/// φ′, the degree 0 adds one.
 pub(super) struct Kernel {
     /// K.
     pub matrix: DMatrix<f64>,

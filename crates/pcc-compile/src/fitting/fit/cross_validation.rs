@@ -35,8 +35,8 @@ impl Problem {
         Self { equations, columns, targets }
     }
 
-    /// Whether all terms of the set together, none of them chosen, meet all equations to a mean square residual of `exact`
-    /// although there are fewer terms than equations.
+    /// Whether all terms of the set together, none of them chosen, meet all equations to a mean square residual of
+    /// `exact` although there are fewer terms than equations.
     pub fn is_met_by_all_terms(&self, exact: f64) -> bool {
         let (rows, terms) = self.columns.shape();
         if rows == self.equations.samples() || terms >= rows {

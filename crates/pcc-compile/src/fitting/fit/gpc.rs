@@ -2,13 +2,13 @@
 //!
 //! All multi-indices with |α| ≤ p, (r + p)!/(r! p!) of them (equation 6), none chosen. The coefficients come from
 //!
-//! * **projection** ([`project`]): c_α = E\[y ψ_α\], the integral by a tensor Gauss rule with p + 1 nodes per input:
-//!   (p + 1)ʳ model runs. On the nodes the ψ_α are orthonormal under the weights w_i of the rule, so projection is weighted least
-//!   squares there. Its leave-one-out error would follow as for any regression, but says nothing: for every node there are others
-//!   with the same coordinate, so what the degree misses between them is never seen (the clutch with p = 6, r = 3: S² = 1 − 5·10⁻⁷
-//!   where the proportion is 7 % off);
-//! * **least squares** ([`least_squares`]) on the points of a design, equations 7 and 8, with derivatives if there are any. The
-//!   weight of the equations of derivatives is the one with the best leave-one-out S².
+//! * **projection** ([`project`]): c_α = E\[y ψ_α\], the integral by a tensor Gauss rule with p + 1 nodes per input: (p
+//!   + 1)ʳ model runs. On the nodes the ψ_α are orthonormal under the weights w_i of the rule, so projection is
+//!   weighted least squares there. Its leave-one-out error would follow as for any regression, but says nothing: for
+//!   every node there are others with the same coordinate, so what the degree misses between them is never seen (the
+//!   clutch with p = 6, r = 3: S² = 1 − 5·10⁻⁷ where the proportion is 7 % off);
+//! * **least squares** ([`least_squares`]) on the points of a design, equations 7 and 8, with derivatives if there are
+//!   any. The weight of the equations of derivatives is the one with the best leave-one-out S².
 
 use super::method::{
     ComponentFit, Design, Domain, Entry, FitMethod, FitSize, Given, Key, MAX_DEGREE, Meaningless, MethodSetting,
@@ -163,8 +163,8 @@ pub struct Projection {
     pub mean_square_residual: f64,
 }
 
-/// Projects components with `values[id][i]` at node i of `grid` on the polynomials with these `indices`. Differences up to
-/// `resolutions[id]` are rounding of the model.
+/// Projects components with `values[id][i]` at node i of `grid` on the polynomials with these `indices`. Differences up
+/// to `resolutions[id]` are rounding of the model.
 ///
 /// # Errors
 ///
@@ -224,8 +224,8 @@ struct Blocks<'a> {
 }
 
 impl Blocks<'_> {
-    /// Σ_i w_i ψ_α(ξ_i) y_i: a row per index, a column per component. Sums are made block by block in order, so they do not depend
-    /// on the number of threads.
+    /// Σ_i w_i ψ_α(ξ_i) y_i: a row per index, a column per component. Sums are made block by block in order, so they do
+    /// not depend on the number of threads.
     fn coefficients(&self) -> Result<DMatrix<f64>, Interrupted> {
         let nodes = (BLOCK_VALUES / self.indices.len()).clamp(1, BLOCK);
         let blocks = self.grid.len().div_ceil(nodes);
@@ -272,7 +272,8 @@ pub fn least_squares(
     let fit = |weight: f64| -> Result<Fitted, Interrupted> {
         let mut basis = ActiveBasis::constant(tables, response.with_weight(weight), variance, weight, observer)?;
         basis.extend(indices[1..].to_vec())?;
-        // Terms that the points cannot tell apart are left out, and where a point alone determines one, nothing is known there.
+        // Terms that the points cannot tell apart are left out, and where a point alone determines one, nothing is
+        // known there.
         let fitted = Fitted::new(&basis, degree, Stop::GivenDegree)?;
         let is_determined = basis.indices().len() == indices.len() && s2(&fitted).is_finite();
         Ok(if is_determined { fitted } else { Fitted { stop: Stop::DesignExhausted, ..fitted } })

@@ -1,8 +1,9 @@
 //! The list of fitting methods, and what each of them says of itself.
 //!
-//! Every method is a file beside this one. It names itself and its settings with their ranges and defaults ([`Entry`]), says
-//! what a build must know of it ([`Profile`]), and fits one component on one design ([`Solver`]). Studies are read, printed
-//! and hashed from that, so a new method is its file, a variant of [`FitMethod`] and a line of [`METHODS`].
+//! Every method is a file beside this one. It names itself and its settings with their ranges and defaults ([`Entry`]),
+//! says what a build must know of it ([`Profile`]), and fits one component on one design ([`Solver`]). Studies are
+//! read, printed and hashed from that, so a new method is its file, a variant of [`FitMethod`] and a line of
+//! [`METHODS`].
 
 use super::{Fitted, auto, gpc, minimum_norm, multi_element, omp, stepwise};
 use crate::fitting::regression::{BasisTables, Response};
@@ -148,8 +149,8 @@ pub enum FitMethod {
 /// Settings of the methods that choose degree, norm and number of terms by cross-validation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smooth {
-    /// Highest degree, at least 1: in each input for the minimum-norm fit, whose terms can have a higher total degree; of
-    /// the index set for pursuit.
+    /// Highest degree, at least 1: in each input for the minimum-norm fit, whose terms can have a higher total degree;
+    /// of the index set for pursuit.
     pub max_degree: u16,
     /// S² at which a component is accurate enough, in (0, 1\].
     pub s2_target: f64,
@@ -221,7 +222,8 @@ pub struct Profile {
     pub settings: Vec<MethodSetting>,
     /// Where the model is run.
     pub design: Design,
-    /// Whether it solves for as many unknowns as it has terms; others have one per equation, and need a matrix of that size.
+    /// Whether it solves for as many unknowns as it has terms; others have one per equation, and need a matrix of that
+    /// size.
     pub is_least_squares: bool,
     /// Whether it chooses another method for every component.
     pub chooses: bool,
@@ -246,8 +248,8 @@ pub type ComponentFit = (Fitted, &'static str, Previous);
 
 /// A method that is ready to fit components.
 pub trait Solver: Sync {
-    /// Fits one component: `response.values[i]` belongs to point i of `tables`. `None` if the method asks for a larger design, as
-    /// long as the design `can_grow`; else the component settles for what the design carries.
+    /// Fits one component: `response.values[i]` belongs to point i of `tables`. `None` if the method asks for a larger
+    /// design, as long as the design `can_grow`; else the component settles for what the design carries.
     ///
     /// # Errors
     ///
@@ -275,7 +277,8 @@ impl FitMethod {
         }
     }
 
-    /// The method, ready to fit components. Quadrature has a build of its own, in which projections take the place of fits.
+    /// The method, ready to fit components. Quadrature has a build of its own, in which projections take the place of
+    /// fits.
     ///
     /// # Errors
     ///

@@ -5,21 +5,23 @@
 //!
 //! c = S Ψᵀ (K + νI)⁻¹ y,   K = Ψ S Ψᵀ,   S = diag s_α,
 //!
-//! the posterior mean of a Gaussian process with the polynomial kernel K (Rasmussen and Williams 2006, chapters 2 and 5,
-//! <https://gaussianprocess.org/gpml/>). Where least squares must leave out all but some N/2 terms, and choosing them
-//! costs accuracy, this uses every run for every term.
+//! the posterior mean of a Gaussian process with the polynomial kernel K (Rasmussen and Williams 2006, chapters 2 and
+//! 5, <https://gaussianprocess.org/gpml/>). Where least squares must leave out all but some N/2 terms, and choosing
+//! them costs accuracy, this uses every run for every term.
 //!
-//! What a fit without run i misses there is known in closed form: with A = (K + νI)⁻¹, its block A_i for the equations of
-//! run i, and c = A y,
+//! What a fit without run i misses there is known in closed form: with A = (K + νI)⁻¹, its block A_i for the equations
+//! of run i, and c = A y,
 //!
 //! Δ_i = A_i⁻¹ c_i,
 //!
-//! so a design of N runs is judged without a single refit. Without derivatives a run is one value and Δ_i = c_i/A_ii. How the
-//! r + 1 parameters of the prior are found is said in `prior_search`; being tuned on the same runs makes this error look up to
-//! twice smaller than it is. At the points that a grown design adds, the prior of the smaller one is judged blindly.
+//! so a design of N runs is judged without a single refit. Without derivatives a run is one value and Δ_i = c_i/A_ii.
+//! How the r + 1 parameters of the prior are found is said in `prior_search`; being tuned on the same runs makes this
+//! error look up to twice smaller than it is. At the points that a grown design adds, the prior of the smaller one is
+//! judged blindly.
 //!
 //! Derivatives are equations like values: K holds their covariances (Solak, Murray-Smith, Leithead, Leith and Rasmussen
-//! 2003, *Derivative observations in Gaussian process models of dynamic systems*). Where they are not as good as the values, ν of theirs grows by the inverse square of a weight.
+//! 2003, *Derivative observations in Gaussian process models of dynamic systems*). Where they are not as good as the
+//! values, ν of theirs grows by the inverse square of a weight.
 //!
 //! Finally terms too small to matter beside that error are dropped: the expansion is sparse.
 
@@ -106,8 +108,8 @@ impl Previous {
     }
 }
 
-/// Fits one component. `previous` is what a smaller design taught, [`Previous::nothing`] at first; what this one teaches comes
-/// back for the next.
+/// Fits one component. `previous` is what a smaller design taught, [`Previous::nothing`] at first; what this one
+/// teaches comes back for the next.
 ///
 /// `response.values[i]` is the component at point i of `tables`, in its own unit.
 ///
@@ -233,9 +235,9 @@ impl<'a> Problem<'a> {
         search.best(&previous.found, observer)
     }
 
-    /// What the prior of a previous design, chosen without the points that are new here, misses at each of them. Residuals
-    /// of points that were new on designs before are kept while there are few, scaled by how far errors fell since.
-    /// `unchanged` is the solution with the previous prior, if it is known.
+    /// What the prior of a previous design, chosen without the points that are new here, misses at each of them.
+    /// Residuals of points that were new on designs before are kept while there are few, scaled by how far errors fell
+    /// since. `unchanged` is the solution with the previous prior, if it is known.
     fn blind_residuals(&self, previous: &Previous, unchanged: Option<&Solution>, error: f64) -> Option<BlindResiduals> {
         let first = previous.points;
         if first == 0 || first >= self.equations.samples() {
@@ -290,8 +292,8 @@ impl<'a> Problem<'a> {
 }
 
 impl Solution {
-    /// Drops the smallest terms as long as they are together a small share of the leave-one-out error; {0} stays. Returns
-    /// indices, coefficients, residuals, and leave-one-out residuals, to which the dropped terms are added.
+    /// Drops the smallest terms as long as they are together a small share of the leave-one-out error; {0} stays.
+    /// Returns indices, coefficients, residuals, and leave-one-out residuals, to which the dropped terms are added.
     fn without_negligible_terms(
         self,
         dropped_share: f64,

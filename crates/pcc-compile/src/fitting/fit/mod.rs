@@ -31,7 +31,8 @@ pub enum Stop {
     Accurate,
     /// The highest degree was reached.
     HighestDegree,
-    /// The fit asks for more points: S² missed its target or, for stepwise regression, N < 2 card(A) at the next degree.
+    /// The fit asks for more points: S² missed its target or, for stepwise regression, N < 2 card(A) at the next
+    /// degree.
     DesignExhausted,
     /// The values do not vary: the mean is exact.
     Constant,
@@ -43,9 +44,9 @@ pub enum Stop {
     Limited,
 }
 
-/// Leave-one-out residuals at points on which the fit was not tuned, so that they flatter it little or not at all: for the
-/// minimum-norm fit, points that its prior has not seen; for matching pursuit, points outside the folds, which only chose
-/// degree, norm and number of terms; for stepwise regression all, because its terms are chosen by R².
+/// Leave-one-out residuals at points on which the fit was not tuned, so that they flatter it little or not at all: for
+/// the minimum-norm fit, points that its prior has not seen; for matching pursuit, points outside the folds, which only
+/// chose degree, norm and number of terms; for stepwise regression all, because its terms are chosen by R².
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlindResiduals {
     /// The first of these points; they are the last of the design.
@@ -67,8 +68,8 @@ pub struct Fitted {
     pub leave_one_out_residuals: Option<Vec<f64>>,
     /// The same at points on which the fit was not tuned; `None` if it was tuned on all.
     pub blind_residuals: Option<BlindResiduals>,
-    /// Weight of derivatives beside values, from 0, not used, to 1, trusted as much; `None` if there were none. Least squares
-    /// multiplies their equations by it; in the minimum-norm fit their ν is larger by its inverse square.
+    /// Weight of derivatives beside values, from 0, not used, to 1, trusted as much; `None` if there were none. Least
+    /// squares multiplies their equations by it; in the minimum-norm fit their ν is larger by its inverse square.
     pub derivative_weight: Option<f64>,
     /// Degree p at which a stepwise search ended; the highest total degree of the terms for the other methods.
     pub degree: u16,

@@ -1,23 +1,23 @@
 //! Multi-element polynomial chaos: which element is divided next, and along which inputs.
 //!
-//! Section 3.2 of the paper, after Wan and Karniadakis (2005), *An adaptive multi-element generalized polynomial chaos method for
-//! stochastic differential equations*, <https://doi.org/10.1016/j.jcp.2005.03.023>.
+//! Section 3.2 of the paper, after Wan and Karniadakis (2005), *An adaptive multi-element generalized polynomial chaos
+//! method for stochastic differential equations*, <https://doi.org/10.1016/j.jcp.2005.03.023>.
 //!
-//! The box is divided into elements, each with a full expansion of total degree p in its own local variables. Where a function
-//! is smooth its coefficients fall fast with the order; the *decay rate* of an element is the share of its variance that the
-//! highest order carries,
+//! The box is divided into elements, each with a full expansion of total degree p in its own local variables. Where a
+//! function is smooth its coefficients fall fast with the order; the *decay rate* of an element is the share of its
+//! variance that the highest order carries,
 //!
 //! η = Σ_{|α| = p} c_α² / Σ_{α ≠ 0} c_α².
 //!
-//! An element of probability w is divided if η^γ w ≥ θ₁, for the component where this is largest. The share that input j has in
-//! the highest order,
+//! An element of probability w is divided if η^γ w ≥ θ₁, for the component where this is largest. The share that input
+//! j has in the highest order,
 //!
 //! r_j = c²_{p e_j} / Σ_{|α| = p} c_α²,
 //!
-//! says along which inputs: all with r_j ≥ θ₂ max r_k are halved; if only products of inputs carry the highest order, the share
-//! of an input is that of the products it is in. Wan and Karniadakis divide all elements that ask for it at once; here they are
-//! taken one by one, the largest η^γ w first, so that a limit on their number is spent where it is needed most. Near the limit an
-//! element is halved along fewer inputs, those with the largest r_j.
+//! says along which inputs: all with r_j ≥ θ₂ max r_k are halved; if only products of inputs carry the highest order,
+//! the share of an input is that of the products it is in. Wan and Karniadakis divide all elements that ask for it at
+//! once; here they are taken one by one, the largest η^γ w first, so that a limit on their number is spent where it is
+//! needed most. Near the limit an element is halved along fewer inputs, those with the largest r_j.
 
 use super::gpc::Projection;
 use super::method::{Design, Domain, Entry, FitMethod, Key, MAX_DEGREE, MethodSetting, Profile, Value, number_setting};
@@ -26,8 +26,8 @@ use pcc_evaluate::polynomials::IndexSet;
 /// Squares of coefficients up to this share of those of the highest order are rounding of the quadrature.
 const ROUNDING: f64 = 1e-24;
 
-/// Shares and urgencies closer than this are equal but for rounding: the input or element that comes first is taken, on every
-/// processor.
+/// Shares and urgencies closer than this are equal but for rounding: the input or element that comes first is taken, on
+/// every processor.
 pub const EQUAL: f64 = 1e-9;
 
 /// More elements are refused: each has expansions of its own, and finding room for the next looks at all splits.
@@ -69,7 +69,8 @@ pub(super) const METHOD: Entry = Entry {
 pub struct MultiElement {
     /// p of the expansion in each element, at least 1.
     pub max_degree: u16,
-    /// θ₁: elements whose decay rate η, to the power γ and times their probability, is at least this are divided; not negative.
+    /// θ₁: elements whose decay rate η, to the power γ and times their probability, is at least this are divided; not
+    /// negative.
     pub theta_1: f64,
     /// θ₂: inputs whose share of the highest order is at least this part of the largest share are halved; in (0, 1\].
     pub theta_2: f64,
@@ -130,7 +131,8 @@ fn decay_rate(projection: &Projection, indices: &IndexSet, degree: u16) -> f64 {
     if all > 0.0 { highest / all } else { 0.0 }
 }
 
-/// The inputs with r_j ≥ θ₂ max r_k. If only products carry the highest order, an input's share is that of the terms it is in.
+/// The inputs with r_j ≥ θ₂ max r_k. If only products carry the highest order, an input's share is that of the terms it
+/// is in.
 fn sensitive_inputs(projection: &Projection, indices: &IndexSet, settings: &MultiElement) -> Vec<usize> {
     let (inputs, degree) = (indices[0].len(), settings.max_degree);
     let highest = |alpha: &[u16]| alpha.iter().sum::<u16>() == degree;

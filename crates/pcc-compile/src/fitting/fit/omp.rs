@@ -4,14 +4,15 @@
 //! candidate by the part of it that is orthogonal to the terms before it (orthogonal least squares; Chen, Billings and
 //! Luo 1989, <https://doi.org/10.1080/00207178908953472>).
 //!
-//! On a set of candidates, each step adds the one that lowers the residual most. How many steps N runs can carry is found
-//! by ten-fold cross-validation of the *whole path*, selection included. The leave-one-out error of the selected terms, even
-//! corrected for small designs, does not see that they were selected: it falls to rounding as the path nears N terms
-//! while the true error rises again.
+//! On a set of candidates, each step adds the one that lowers the residual most. How many steps N runs can carry is
+//! found by ten-fold cross-validation of the *whole path*, selection included. The leave-one-out error of the selected
+//! terms, even corrected for small designs, does not see that they were selected: it falls to rounding as the path
+//! nears N terms while the true error rises again.
 //!
-//! With derivatives a fold leaves out whole runs, and the error is that of values. Their weight is chosen by it, too. As each
-//! run gives several equations, few runs can determine an expansion exactly and yet be too few to leave one out; so a whole
-//! set of candidates that meets all equations with fewer terms than there are equations is taken at once.
+//! With derivatives a fold leaves out whole runs, and the error is that of values. Their weight is chosen by it, too.
+//! As each run gives several equations, few runs can determine an expansion exactly and yet be too few to leave one
+//! out; so a whole set of candidates that meets all equations with fewer terms than there are equations is taken at
+//! once.
 //!
 //! Candidate sets {‖α‖_q ≤ p} grow degree by degree for each norm q until degrees bring nothing more or candidates
 //! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
@@ -88,8 +89,8 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// The candidates for `inputs` variables that up to `largest_design` runs, each with so many `derivatives`, could use, of
-    /// degree up to `max_degree`.
+    /// The candidates for `inputs` variables that up to `largest_design` runs, each with so many `derivatives`, could
+    /// use, of degree up to `max_degree`.
     ///
     /// # Errors
     ///
@@ -123,7 +124,8 @@ fn most_candidates(runs: usize, derivatives: usize) -> usize {
 
 /// Fits one component: `response.values[i]` belongs to point i of `tables`.
 ///
-/// The leave-one-out residuals of the result are those of the folds: each point is predicted by a path that never saw it.
+/// The leave-one-out residuals of the result are those of the folds: each point is predicted by a path that never saw
+/// it.
 ///
 /// # Errors
 ///
@@ -145,7 +147,8 @@ fn most_candidates(runs: usize, derivatives: usize) -> usize {
 /// let values: Vec<f64> = samples.points().map(|x| 1.0 + x[0] - 2.0 * x[1] * x[2]).collect();
 /// let tables = BasisTables::new(&samples, &vec![Family::Legendre.recurrence(8); 3], 8);
 /// let response = Response::of(&values, 1e-13);
-/// let fitted = fit(&tables, response, &Candidates::new(3, 8, 40, 0)?, &Smooth { max_degree: 8, s2_target: 0.999 }, &Silent)?;
+/// let settings = Smooth { max_degree: 8, s2_target: 0.999 };
+/// let fitted = fit(&tables, response, &Candidates::new(3, 8, 40, 0)?, &settings, &Silent)?;
 /// assert_eq!(fitted.indices.len(), 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -5,9 +5,9 @@
 //!
 //! s_α = Π_{j: α_j > 0} v w_j^{α_j},   0 < w_j < 1,
 //!
-//! with one decay w_j per input and one weight v that says how far inputs interact. A product over inputs makes
-//! K = Σ_α s_α ψ_α ψ_αᵀ, summed over *all* α up to a degree per input, a product of r small sums. With derivatives, ψ_α
-//! stands for its value at a point in some rows and for a derivative in others; then one of the sums has φ′ in place of φ.
+//! with one decay w_j per input and one weight v that says how far inputs interact. A product over inputs makes K = Σ_α
+//! s_α ψ_α ψ_αᵀ, summed over *all* α up to a degree per input, a product of r small sums. With derivatives, ψ_α stands
+//! for its value at a point in some rows and for a derivative in others; then one of the sums has φ′ in place of φ.
 
 use pcc_evaluate::polynomials::MultiIndex;
 
@@ -92,8 +92,8 @@ impl Prior {
         alpha.iter().enumerate().map(|(j, &degree)| self.log_factor(j, degree)).sum()
     }
 
-    /// The prior variances of degrees 1… of an input, up to where they are negligible or to `degree`, and their derivatives by
-    /// ln(−ln w_j).
+    /// The prior variances of degrees 1… of an input, up to where they are negligible or to `degree`, and their
+    /// derivatives by ln(−ln w_j).
     pub(super) fn variances(&self, input: usize, degree: u16) -> (Vec<f64>, Vec<f64>) {
         let rate = self.parameters[input].exp();
         let used = (1..degree).find(|&n| (-rate * f64::from(n)).exp() < NEGLIGIBLE).unwrap_or(degree);
@@ -103,8 +103,8 @@ impl Prior {
         (variances, slopes)
     }
 
-    /// The `count` multi-indices with the largest prior variance, the canonically first among equals, with degrees up to
-    /// `degree` in each input, in canonical order.
+    /// The `count` multi-indices with the largest prior variance, the canonically first among equals, with degrees up
+    /// to `degree` in each input, in canonical order.
     pub(super) fn likeliest(&self, count: usize, degree: u16) -> Vec<MultiIndex> {
         let walk = Walk::new(self, degree);
         // Bisection for the threshold of ln s_α: members can only become fewer as it rises.

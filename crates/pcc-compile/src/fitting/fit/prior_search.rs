@@ -1,10 +1,10 @@
 //! The search for the prior, and for the weight of derivatives.
 //!
 //! Without derivatives the parameters minimise the leave-one-out error itself. With derivatives a few runs give many
-//! equations, but few left-out values: there the likelihood of all equations leads the search, which needs a fifth of the
-//! steps and ends at priors that predict as well or better (the clutch with 8 inputs, 16 to 64 runs). What it finds is
-//! judged by the values of left-out runs in either case: whether to start anew, and how much weight derivatives deserve.
-//! Priors of different weights are comparable then, because none was tuned on the error that is compared.
+//! equations, but few left-out values: there the likelihood of all equations leads the search, which needs a fifth of
+//! the steps and ends at priors that predict as well or better (the clutch with 8 inputs, 16 to 64 runs). What it finds
+//! is judged by the values of left-out runs in either case: whether to start anew, and how much weight derivatives
+//! deserve. Priors of different weights are comparable then, because none was tuned on the error that is compared.
 
 use super::covariance::Kernel;
 use super::prior::Prior;
@@ -14,8 +14,8 @@ use crate::numerics::minimize::{Evaluation, Limits, Start, minimize};
 use nalgebra::{DMatrix, DVector};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 
-/// The prior is found on so many equations at most, those of the first points: each step of the search costs the cube of
-/// their number. With derivatives they are those of so many runs per parameter of the prior at least.
+/// The prior is found on so many equations at most, those of the first points: each step of the search costs the cube
+/// of their number. With derivatives they are those of so many runs per parameter of the prior at least.
 const MOST_EQUATIONS: usize = 450;
 const RUNS_PER_PARAMETER: usize = 3;
 
@@ -88,8 +88,8 @@ impl Search<'_> {
         Prior::bounds(self.tables.inputs()).len() + LEAST_SURPLUS
     }
 
-    /// The prior and weight found from those of a smaller design. A start that led into a side valley there is recognised by
-    /// an error that no longer falls; then the search is repeated from the neutral prior.
+    /// The prior and weight found from those of a smaller design. A start that led into a side valley there is
+    /// recognised by an error that no longer falls; then the search is repeated from the neutral prior.
     pub fn best(&self, start: &Found, observer: &dyn Observer) -> Result<Found, Interrupted> {
         let mut found = self.descend(start, observer)?;
         if found.error >= start.error - EXPECTED_GAIN {
@@ -224,7 +224,8 @@ impl Part<'_> {
 
     /// The same for values alone, with its derivatives by the parameters of the prior.
     ///
-    /// With c = Ay and Δ_i = c_i/A_ii: ΣΔdΔ = Σ G_ab dK_ab with G = −(A u) cᵀ + A diag(t) A, u_i = Δ_i/A_ii, t_i = Δ_i c_i/A_ii².
+    /// With c = Ay and Δ_i = c_i/A_ii: ΣΔdΔ = Σ G_ab dK_ab with G = −(A u) cᵀ + A diag(t) A, u_i = Δ_i/A_ii, t_i = Δ_i
+    /// c_i/A_ii².
     fn leave_one_out_error(&self, prior: &Prior) -> Evaluation {
         let kernel = Kernel::new(prior, self.tables, &self.equations, self.degree);
         let regularized = Regularized::new(&kernel.matrix, &self.equations, 1.0)?;

@@ -52,8 +52,8 @@ impl Regularized {
         by_matrix
     }
 
-    /// What the fits without each run miss at its value: the first entry of Δ_i = A_i⁻¹ c_i, where A_i is the block of run i and
-    /// c = A y. `None` if a block cannot be solved for.
+    /// What the fits without each run miss at its value: the first entry of Δ_i = A_i⁻¹ c_i, where A_i is the block of
+    /// run i and c = A y. `None` if a block cannot be solved for.
     pub fn left_out(&self, equations: &Equations, weighted: &DVector<f64>) -> Option<DVector<f64>> {
         let residuals: Option<Vec<f64>> = (0..equations.samples())
             .map(|i| {

@@ -3,20 +3,20 @@
 //! Kieu, Bergeot and Berger (2017), section 3.3.3, after Blatman and Sudret (2010),
 //! <https://doi.org/10.1016/j.probengmech.2009.10.003>.
 //!
-//! Degree by degree, every candidate multi-index with p − 1 < ‖α‖_q ≤ p is tried alone on the set accepted at degree
-//! p − 1 and kept if it raises R² by at least ε₁ (forward step). Then every term with ‖α‖_q ≤ p − 1 but {0} is tried
+//! Degree by degree, every candidate multi-index with p − 1 < ‖α‖_q ≤ p is tried alone on the set accepted at degree p
+//! − 1 and kept if it raises R² by at least ε₁ (forward step). Then every term with ‖α‖_q ≤ p − 1 but {0} is tried
 //! alone for removal and dropped if that lowers R² by less than ε₂ (backward step). If then N < 2 card(A), the design
-//! must grow and the search starts again from {0} (step 4). The search ends when the leave-one-out S² reaches its target
-//! or at the highest degree (step 5).
+//! must grow and the search starts again from {0} (step 4). The search ends when the leave-one-out S² reaches its
+//! target or at the highest degree (step 5).
 //!
 //! One case the paper leaves open: if the forward step accepts as many terms as there are points, least squares has no
 //! unique solution and no backward step can be taken; this counts as a failed size test.
 //!
-//! With derivatives each run gives several equations, and counting says little: values and derivatives at few points can
-//! be dependent (Alexander and Hirschowitz 1995). N < 2 card(A) says that the mean leverage of a value is above ½; this is what
-//! is tested then, with runs left out as a whole ([`ActiveBasis::mean_leverage`]), and terms that depend on others fail the test,
-//! too. R² of the two steps is that of all equations, S² that of the values. The search is made for several weights of the
-//! derivatives; the one with the best S² counts.
+//! With derivatives each run gives several equations, and counting says little: values and derivatives at few points
+//! can be dependent (Alexander and Hirschowitz 1995). N < 2 card(A) says that the mean leverage of a value is above ½;
+//! this is what is tested then, with runs left out as a whole ([`ActiveBasis::mean_leverage`]), and terms that depend
+//! on others fail the test, too. R² of the two steps is that of all equations, S² that of the values. The search is
+//! made for several weights of the derivatives; the one with the best S² counts.
 
 use std::collections::HashSet;
 
@@ -236,8 +236,8 @@ fn search(
     Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)?))
 }
 
-/// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for; derivatives have full weight,
-/// with which the search that gave the terms began.
+/// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for; derivatives have full
+/// weight, with which the search that gave the terms began.
 ///
 /// # Errors
 ///
@@ -258,8 +258,8 @@ pub fn settle(
     Ok(Fitted { derivative_weight: response.gradients.map(|_| 1.0), ..fitted })
 }
 
-/// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as equations, adds
-/// nothing and returns false; so it does if terms depend on each other beside derivatives.
+/// Adds the candidates that, each alone, raise R² by at least `epsilon`. If that would be as many terms as equations,
+/// adds nothing and returns false; so it does if terms depend on each other beside derivatives.
 fn forward_step(basis: &mut ActiveBasis<'_>, candidates: &[MultiIndex], epsilon: f64) -> Result<bool, Interrupted> {
     let gains = basis.gains(candidates)?;
     let significant = candidates.iter().zip(gains).filter(|&(_, gain)| gain > 0.0 && gain >= epsilon);
@@ -379,8 +379,8 @@ mod tests {
         assert_eq!(basis.indices(), [MultiIndex::constant(2), MultiIndex::new(vec![2, 0])]);
     }
 
-    /// Degree 2 in two inputs has six terms, four of which make up the values. On few points the other two correlate with
-    /// the residual and join as well: fewer than 8 points never suffice, 12 always do.
+    /// Degree 2 in two inputs has six terms, four of which make up the values. On few points the other two correlate
+    /// with the residual and join as well: fewer than 8 points never suffice, 12 always do.
     #[test]
     fn two_points_per_term_are_required_and_suffice() {
         let terms = [([0, 0], 1.0), ([1, 0], 1.0), ([0, 1], 1.0), ([1, 1], 1.0)];

@@ -1,7 +1,8 @@
 //! The set of terms accepted so far, with the least-squares fit of one component on it.
 //!
-//! The equations are values and perhaps derivatives, each derivative multiplied by a weight and by the unit that makes the
-//! derivative of a linear term as large as the term. Residuals, leverages and rank come from one QR factorisation of them all.
+//! The equations are values and perhaps derivatives, each derivative multiplied by a weight and by the unit that makes
+//! the derivative of a linear term as large as the term. Residuals, leverages and rank come from one QR factorisation
+//! of them all.
 
 use super::equations::{Equations, LeftOut, leave_runs_out};
 use super::errors::{ErrorMeasures, Response, leave_one_out_residuals};
@@ -35,8 +36,8 @@ pub struct ActiveBasis<'a> {
 }
 
 impl<'a> ActiveBasis<'a> {
-    /// A = {0}: the fit by a constant. `response.values[i]` belongs to point i of `tables`; `variance` is their V̂, not zero.
-    /// Derivatives are equations with `weight` beside the values.
+    /// A = {0}: the fit by a constant. `response.values[i]` belongs to point i of `tables`; `variance` is their V̂, not
+    /// zero. Derivatives are equations with `weight` beside the values.
     ///
     /// # Errors
     ///
@@ -162,8 +163,8 @@ impl<'a> ActiveBasis<'a> {
         self.qr.coefficients(&self.targets)
     }
 
-    /// R², S² and corrected S², all of the values. With derivatives, S² leaves out whole runs, and there is no correction for
-    /// small designs.
+    /// R², S² and corrected S², all of the values. With derivatives, S² leaves out whole runs, and there is no
+    /// correction for small designs.
     ///
     /// # Errors
     ///
@@ -194,8 +195,8 @@ impl<'a> ActiveBasis<'a> {
         leave_one_out_residuals(self.residual.as_slice(), &self.qr.leverages())
     }
 
-    /// Mean leverage h̃ of the values when runs are left out as a whole ([`LeftOut::leverages`]), P/N without derivatives; one if
-    /// a run is not determined by the others.
+    /// Mean leverage h̃ of the values when runs are left out as a whole ([`LeftOut::leverages`]), P/N without
+    /// derivatives; one if a run is not determined by the others.
     pub fn mean_leverage(&self) -> f64 {
         let samples = self.samples() as f64;
         if !self.has_derivatives() {

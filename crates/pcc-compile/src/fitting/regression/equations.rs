@@ -80,14 +80,14 @@ impl Equations {
 pub struct LeftOut {
     /// The first entry of Δ_i, that of the value, for every run.
     pub residuals: Vec<f64>,
-    /// h̃_i = 1 − 1/((I − H_i)⁻¹)₀₀: leverage of the value of run i when the run is left out as a whole; h_i if the run is one
-    /// value.
+    /// h̃_i = 1 − 1/((I − H_i)⁻¹)₀₀: leverage of the value of run i when the run is left out as a whole; h_i if the run
+    /// is one value.
     pub leverages: Vec<f64>,
 }
 
-/// Δ_i = (I − H_i)⁻¹ e_i for the residuals e_i of run i and its block H_i = Q_i Q_iᵀ of the hat matrix (Cook and Weisberg
-/// 1982, *Residuals and influence in regression*, section 3.6): what the fit without run i misses there. `q` has a row per
-/// equation and `residuals` an entry. `None` if a run is not determined by the others.
+/// Δ_i = (I − H_i)⁻¹ e_i for the residuals e_i of run i and its block H_i = Q_i Q_iᵀ of the hat matrix (Cook and
+/// Weisberg 1982, *Residuals and influence in regression*, section 3.6): what the fit without run i misses there. `q`
+/// has a row per equation and `residuals` an entry. `None` if a run is not determined by the others.
 pub fn leave_runs_out(equations: &Equations, q: &DMatrixView<'_, f64>, residuals: &[f64]) -> Option<LeftOut> {
     let mut left_out = LeftOut { residuals: Vec::new(), leverages: Vec::new() };
     for i in 0..equations.samples() {

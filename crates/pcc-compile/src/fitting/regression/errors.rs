@@ -3,7 +3,8 @@
 use super::equations::{Equations, Gradients};
 use pcc_evaluate::probability::statistics::Moments;
 
-/// Leverages closer to one than this, or eigenvalues of the leverages of a run, leave a leave-one-out residual undetermined.
+/// Leverages closer to one than this, or eigenvalues of the leverages of a run, leave a leave-one-out residual
+/// undetermined.
 pub(super) const LEVERAGE_MARGIN: f64 = 1e-10;
 
 /// Quality of a fit with N values and P terms. Errors are relative to the variance of the values with divisor N − 1.
@@ -11,7 +12,8 @@ pub(super) const LEVERAGE_MARGIN: f64 = 1e-10;
 pub struct ErrorMeasures {
     /// R² = 1 − Err_emp/V̂: the share of variance explained on the design itself.
     pub r2: f64,
-    /// S² = 1 − Err_LOO/V̂: the share explained at points left out. `None` if a value cannot be predicted from the others.
+    /// S² = 1 − Err_LOO/V̂: the share explained at points left out. `None` if a value cannot be predicted from the
+    /// others.
     pub s2: Option<f64>,
     /// S² with the error increased by N/(N − P)·(1 + tr (ΨᵀΨ)⁻¹) (Chapelle, Vapnik and Bengio 2002,
     /// <https://doi.org/10.1023/A:1013943418833>), for small designs.

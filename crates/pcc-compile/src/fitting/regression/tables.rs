@@ -5,8 +5,8 @@ use crate::fitting::design::Samples;
 use nalgebra::{DMatrix, DMatrixView};
 use pcc_evaluate::polynomials::{MultiIndex, Recurrence};
 
-/// Univariate polynomials, and perhaps their derivatives, at every point of a design: what multivariate ones are products
-/// of.
+/// Univariate polynomials, and perhaps their derivatives, at every point of a design: what multivariate ones are
+/// products of.
 #[derive(Debug, Clone)]
 pub struct BasisTables {
     samples: usize,
@@ -87,8 +87,8 @@ impl BasisTables {
         self.stacked(indices, &Equations::values_alone(self.samples))
     }
 
-    /// The matrix with one row per equation, values first, and a column for each α: ψ_α(ξ_i), then ∂ψ_α/∂ξ_j at the points
-    /// that have derivatives, input by input.
+    /// The matrix with one row per equation, values first, and a column for each α: ψ_α(ξ_i), then ∂ψ_α/∂ξ_j at the
+    /// points that have derivatives, input by input.
     ///
     /// # Panics
     ///

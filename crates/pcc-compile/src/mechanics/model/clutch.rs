@@ -1,11 +1,12 @@
-//! The 6-degree-of-freedom clutch of Wickramarachi, Singh and Bailey (2005) with internal damping, section 4 of the paper.
+//! The 6-degree-of-freedom clutch of Wickramarachi, Singh and Bailey (2005) with internal damping, section 4 of the
+//! paper.
 //!
 //! A pressure plate, modelled as four masses M_p/4 on bending springs k_f, rotates by θ_x and θ_y and is pressed on the
 //! flywheel by four cushion springs k_A … k_D; friction μ at their contacts couples the two rotations.
 //!
 //! Two things differ from the printed paper. Entry (1, 2) of K and C is +μ l r (k_C + k_D): with the printed minus the
-//! rigid rotation (0, 1, 0, 0, −r, r) is not in the null space of K, a real eigenvalue appears and no modes coalesce. And
-//! M_p, I_x, I_y, which are not printed, are those that reproduce its table 2: 40 kg and 0.030 kg·m².
+//! rigid rotation (0, 1, 0, 0, −r, r) is not in the null space of K, a real eigenvalue appears and no modes coalesce.
+//! And M_p, I_x, I_y, which are not printed, are those that reproduce its table 2: 40 kg and 0.030 kg·m².
 
 use super::second_order::{Linearization, SecondOrder};
 use super::{Model, ModelError, Parameter, Range};
@@ -22,7 +23,8 @@ const fn parameter(
     Parameter { name, unit, nominal, range, meaning }
 }
 
-/// Every parameter of the clutch with its nominal value. The first eight are those the paper treats as uncertain, in its order.
+/// Every parameter of the clutch with its nominal value. The first eight are those the paper treats as uncertain, in
+/// its order.
 pub const CLUTCH_PARAMETERS: [Parameter; 16] = [
     parameter("mu", "", 0.25, Range::NonNegative, "friction coefficient"),
     parameter("k_p", "N/m", 16e6, Range::NonNegative, "cushion stiffness"),
@@ -147,7 +149,8 @@ fn springs(k_p: f64, gamma_1: f64, gamma_2: f64) -> [f64; 4] {
 
 /// The derivatives of M, C and K by the parameter number `by`.
 ///
-/// C and K are linear in the springs or dampers and in the five lever products, so each derivative is one more assembly.
+/// C and K are linear in the springs or dampers and in the five lever products, so each derivative is one more
+/// assembly.
 fn derivative(values: &[f64; 16], by: usize) -> SecondOrder {
     let [mu, k_p, k_f, gamma_1, gamma_2, r_1, r_2, l, _, _, _, c_a, c_b, c_c, c_d, c_f] = *values;
     let r = (r_1 + r_2) / 2.0;
@@ -190,8 +193,8 @@ fn mass(inertia_x: f64, inertia_y: f64, plate_mass: f64) -> DMatrix<f64> {
     DMatrix::from_diagonal(&dvector![inertia_x, inertia_y, quarter, quarter, quarter, quarter])
 }
 
-/// The products of friction coefficient μ, mean radius r = (r_1 + r_2)/2 in m and thickness l in m that multiply springs and
-/// dampers; or their derivatives.
+/// The products of friction coefficient μ, mean radius r = (r_1 + r_2)/2 in m and thickness l in m that multiply
+/// springs and dampers; or their derivatives.
 struct Levers {
     one: f64,
     r: f64,

@@ -112,8 +112,8 @@ pub enum Concurrency {
 
 /// A system whose eigenvalues depend on parameters.
 ///
-/// One call of [`Model::eigenvalues`] or of [`Model::linearization`] is one direct computation. Calls come from several threads
-/// at once.
+/// One call of [`Model::eigenvalues`] or of [`Model::linearization`] is one direct computation. Calls come from several
+/// threads at once.
 pub trait Model: Sync {
     /// All eigenvalues λ of the state matrix, in 1/s, at `point`: one value per uncertain input, in the order of the
     /// study's inputs and in physical units.

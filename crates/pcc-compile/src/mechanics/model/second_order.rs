@@ -3,8 +3,8 @@
 use super::ModelError;
 use nalgebra::{DMatrix, Dyn, LU};
 
-/// Mass, damping and stiffness matrices of M Ü + C U̇ + K U = 0, n × n each, in units that fit together (kg, N·s/m and N/m for
-/// displacements in m); or their derivatives by a parameter.
+/// Mass, damping and stiffness matrices of M Ü + C U̇ + K U = 0, n × n each, in units that fit together (kg, N·s/m and
+/// N/m for displacements in m); or their derivatives by a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SecondOrder {
     /// M. Need not be symmetric.

@@ -1,16 +1,16 @@
 //! Which modes belong together: groups of neighbours in frequency that come close somewhere on a design.
 //!
-//! Where two eigenvalues come close, each alone changes fast with the inputs, and like a square root where they coalesce;
-//! the symmetric functions of both stay smooth. A gap between neighbours that closes to a small share of what it is
-//! elsewhere is the sign of it. The same holds for a mode and its own conjugate near the real axis, and for rigid-body
-//! motion, but there no group of oscillating modes can be formed: that is reported.
+//! Where two eigenvalues come close, each alone changes fast with the inputs, and like a square root where they
+//! coalesce; the symmetric functions of both stay smooth. A gap between neighbours that closes to a small share of what
+//! it is elsewhere is the sign of it. The same holds for a mode and its own conjugate near the real axis, and for
+//! rigid-body motion, but there no group of oscillating modes can be formed: that is reported.
 
 use super::modes::Spectrum;
 use pcc_evaluate::components::MOST_MODES;
 use thiserror::Error;
 
-/// Neighbours whose frequencies come closer than this share of the largest distance |λ_{k+1} − λ_k| on the design belong
-/// together. The coalescing pair of the clutch reaches 10⁻³, its next neighbours stay above 0.8.
+/// Neighbours whose frequencies come closer than this share of the largest distance |λ_{k+1} − λ_k| on the design
+/// belong together. The coalescing pair of the clutch reaches 10⁻³, its next neighbours stay above 0.8.
 const CLOSE: f64 = 0.2;
 
 /// A mode whose frequency falls below this share of its largest on the design cannot be told from its conjugate.

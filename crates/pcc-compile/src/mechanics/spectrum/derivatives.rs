@@ -1,16 +1,17 @@
 //! Derivatives of invariants by the inputs, from the Schur form of one eigenvalue solve.
 //!
-//! With the spectral projector P of a group of k eigenvalues (Kato 1995, chapter II, <https://doi.org/10.1007/978-3-642-66282-9>),
-//! the mean s and the power sums p_m = Σ(λ_i − s)^m have
+//! With the spectral projector P of a group of k eigenvalues (Kato 1995, chapter II,
+//! <https://doi.org/10.1007/978-3-642-66282-9>), the mean s and the power sums p_m = Σ(λ_i − s)^m have
 //!
 //! ds = tr(P dA)/k,   dp_m = m tr(P (A − sI)^{m−1} dA) − m p_{m−1} ds,
 //!
-//! the last term because s moves, too. Newton's identities turn power sums into the coefficients of Π(z − (λ_i − s)). All of
-//! this is regular where the eigenvalues of the group coalesce; only groups that come close to other eigenvalues have no P.
+//! the last term because s moves, too. Newton's identities turn power sums into the coefficients of Π(z − (λ_i − s)).
+//! All of this is regular where the eigenvalues of the group coalesce; only groups that come close to other eigenvalues
+//! have no P.
 //!
 //! Which modes form groups is known after all runs. Until then a run keeps the state matrix and its derivatives on the
-//! invariant subspace of all modes of interest: for m modes T = WAV and D_j = W ∂A/∂x_j V, m × m each, with P = VPʹW and the
-//! projector Pʹ of the group within T.
+//! invariant subspace of all modes of interest: for m modes T = WAV and D_j = W ∂A/∂x_j V, m × m each, with P = VPʹW
+//! and the projector Pʹ of the group within T.
 
 use super::modes::Spectrum;
 use crate::numerics::eigenvalues::SchurForm;
@@ -30,7 +31,8 @@ pub struct ReducedSystem {
 }
 
 impl ReducedSystem {
-    /// The system of these parts: frequency ranks from 1, T, and one derivative per input. `None` if their sizes do not fit together.
+    /// The system of these parts: frequency ranks from 1, T, and one derivative per input. `None` if their sizes do not
+    /// fit together.
     pub fn from_parts(
         modes: Vec<usize>,
         state_matrix: DMatrix<Complex<f64>>,
@@ -56,11 +58,11 @@ impl ReducedSystem {
         &self.derivatives
     }
 
-    /// Reduces a system to the modes with the given ranks. `derivatives` are those of the state matrix by each input, in
-    /// physical units; `spectrum` are the modes of `schur`.
+    /// Reduces a system to the modes with the given ranks. `derivatives` are those of the state matrix by each input,
+    /// in physical units; `spectrum` are the modes of `schur`.
     ///
-    /// `None` if the modes cannot be separated from the rest of the spectrum ([`Subspace::is_separated`]), or one of them does
-    /// not exist.
+    /// `None` if the modes cannot be separated from the rest of the spectrum ([`Subspace::is_separated`]), or one of
+    /// them does not exist.
     pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], spectrum: &Spectrum, modes: &[usize]) -> Option<Self> {
         let lambdas = schur.eigenvalues();
         let mut positions: Vec<usize> = Vec::with_capacity(modes.len());
@@ -78,8 +80,8 @@ impl ReducedSystem {
         })
     }
 
-    /// The derivatives of the mean s and the coefficients c_{k−2}, …, c_0 of a group of modes, one list per input; `None` if the
-    /// group cannot be separated from the other modes.
+    /// The derivatives of the mean s and the coefficients c_{k−2}, …, c_0 of a group of modes, one list per input;
+    /// `None` if the group cannot be separated from the other modes.
     fn slopes(&self, group: &[usize]) -> Option<Vec<Vec<Complex<f64>>>> {
         let position = |mode: &usize| self.modes.iter().position(|known| known == mode);
         let positions: Vec<usize> = group.iter().map(position).collect::<Option<_>>()?;
@@ -91,8 +93,8 @@ impl ReducedSystem {
         (subspace.is_separated() && is_finite).then_some(found)
     }
 
-    /// The derivatives of the components of `output`, in their order, by each input in physical units: one list per input.
-    /// `None` if its modes cannot be separated from the rest of the spectrum to eight digits.
+    /// The derivatives of the components of `output`, in their order, by each input in physical units: one list per
+    /// input. `None` if its modes cannot be separated from the rest of the spectrum to eight digits.
     pub fn differentiate(&self, output: &Output) -> Option<Vec<Vec<f64>>> {
         let parts = self.slopes(&output.modes)?;
         Some(parts.iter().map(|by_input| by_input.iter().flat_map(|slope| [slope.re, slope.im]).collect()).collect())

@@ -7,8 +7,8 @@ use thiserror::Error;
 /// no oscillation. Fourfold zero eigenvalues come out of the solver at about 1e-8 max |λ|.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Frequencies that differ by at most this share of max |λ| are equal but for rounding; the growth rate then decides the
-/// order, as it does for an undamped pair in flutter.
+/// Frequencies that differ by at most this share of max |λ| are equal but for rounding; the growth rate then decides
+/// the order, as it does for an undamped pair in flutter.
 const EQUAL_FREQUENCY: f64 = 1e-12;
 
 /// Why eigenvalues could not be sorted into modes.

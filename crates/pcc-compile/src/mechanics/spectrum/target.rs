@@ -23,8 +23,8 @@ impl Target {
         }
     }
 
-    /// The outputs for the modes with the given ranks, ascending, on a design with these spectra. Component ids count from
-    /// 0 in the order of the outputs.
+    /// The outputs for the modes with the given ranks, ascending, on a design with these spectra. Component ids count
+    /// from 0 in the order of the outputs.
     ///
     /// # Errors
     ///
@@ -47,7 +47,8 @@ impl Target {
     }
 }
 
-/// Writes the values of the components of `output` at one spectrum into `values`, by id: the inverse of [`Output::recombine`].
+/// Writes the values of the components of `output` at one spectrum into `values`, by id: the inverse of
+/// [`Output::recombine`].
 ///
 /// # Errors
 ///

@@ -5,8 +5,8 @@
 //! farther from the middle than bisection could afford. Functions that are nearly straight inside a cell take six to
 //! eight trials instead of the 24 of bisection, and no function takes more than one trial more than bisection.
 
-/// Halvings of a cell of the grid of [`crate::evaluation::critical_values`] that bring it from 1/64 to 2⁻³⁰ < 10⁻⁹ of the domain's
-/// width.
+/// Halvings of a cell of the grid of [`crate::evaluation::critical_values`] that bring it from 1/64 to 2⁻³⁰ < 10⁻⁹ of
+/// the domain's width.
 const HALVINGS: i32 = 24;
 
 /// n₀ of the method: trials that interpolation may cost more than bisection.

@@ -18,7 +18,7 @@
 //! equal bins, so memory does not depend on the number of samples.
 
 use super::bracket::{Bracket, End};
-use crate::evaluation::EvalError;
+use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::Evaluator;
@@ -119,8 +119,8 @@ impl CriticalValues {
 /// The critical value of input number `input`, from 0, over samples 0 … `samples` − 1 of the others under `seed`, on
 /// the current rayon thread pool.
 ///
-/// Sample i has the coordinates that [`monte_carlo`](fn@crate::evaluation::monte_carlo) evaluates as sample i under this seed,
-/// except that of `input`. The result is the same bits for any number of threads.
+/// Sample i has the coordinates that [`monte_carlo`](fn@crate::evaluation::monte_carlo) evaluates as sample i under
+/// this seed, except that of `input`. The result is the same bits for any number of threads.
 ///
 /// # Errors
 ///

@@ -27,7 +27,7 @@
 //! for the indicator, of z²/(2nV), which is what Wilson's interval leaves open when no such sample was seen.
 
 use super::correlation::{Correlation, Products};
-use crate::evaluation::EvalError;
+use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::{Evaluator, evaluate_points};
@@ -91,8 +91,8 @@ impl Estimate {
 /// Sobol' indices of max Re λ and of the indicator max Re λ < 0, per input in order, from `samples` samples under
 /// `seed`, on the current rayon thread pool.
 ///
-/// A_i is the point that [`monte_carlo`](fn@crate::evaluation::monte_carlo) evaluates as sample i under this seed, B_i what its
-/// stream yields next, so no number is used twice. The result is the same bits for any number of threads.
+/// A_i is the point that [`monte_carlo`](fn@crate::evaluation::monte_carlo) evaluates as sample i under this seed, B_i
+/// what its stream yields next, so no number is used twice. The result is the same bits for any number of threads.
 ///
 /// # Errors
 ///

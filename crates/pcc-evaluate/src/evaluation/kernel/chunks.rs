@@ -1,19 +1,20 @@
 //! Samples in fixed chunks, on all cores, merged in the order of their numbers.
 
-use crate::evaluation::EvalError;
+use crate::evaluation::error::EvalError;
 use crate::foundation::Observer;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Samples treated together where every sample costs several evaluations, a multiple of [`crate::evaluation::BLOCK_POINTS`].
+/// Samples treated together where every sample costs several evaluations, a multiple of
+/// [`crate::evaluation::BLOCK_POINTS`].
 pub(crate) const CHUNK: u64 = 1024;
 
 /// Chunks whose results are held in memory before they are merged.
 const CHUNKS_IN_FLIGHT: u64 = 1024;
 
-/// Calls `work` for every chunk of `chunk` samples among 0 … `samples` − 1 on the current rayon thread pool, each thread with a
-/// `workspace` of its own, and `merge` with the results in the order of the chunks. The size of the chunks is part of the
-/// result's definition, since it fixes the order of sums.
+/// Calls `work` for every chunk of `chunk` samples among 0 … `samples` − 1 on the current rayon thread pool, each
+/// thread with a `workspace` of its own, and `merge` with the results in the order of the chunks. The size of the
+/// chunks is part of the result's definition, since it fixes the order of sums.
 ///
 /// # Errors
 ///

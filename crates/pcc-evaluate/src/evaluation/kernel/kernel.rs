@@ -3,8 +3,8 @@
 //! Written once for all instruction sets: every lane holds one point and goes through the same operations in the same
 //! order, fused multiply-add among them, so all sets give the same bits.
 //!
-//! All of it must end up in the one function that is compiled for an instruction set: a part that does not is twenty times slower.
-//! Hence `inline(always)`, and loops in place of closures, which the compiler may leave apart.
+//! All of it must end up in the one function that is compiled for an instruction set: a part that does not is twenty
+//! times slower. Hence `inline(always)`, and loops in place of closures, which the compiler may leave apart.
 
 #![allow(clippy::needless_range_loop, reason = "indices below a constant leave no check and no iterator behind")]
 

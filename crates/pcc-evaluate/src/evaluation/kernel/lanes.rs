@@ -5,8 +5,8 @@ use pulp::Simd;
 /// Points evaluated together, one per lane: as many as eight vectors of the widest instruction set hold.
 pub const BLOCK_POINTS: usize = 64;
 
-/// Vectors that a calculation works on at once: enough for the processor to start one operation while others are under way,
-/// few enough to stay in registers.
+/// Vectors that a calculation works on at once: enough for the processor to start one operation while others are under
+/// way, few enough to stay in registers.
 pub(crate) const VECTORS: usize = 8;
 
 /// One number per lane, aligned like the widest vectors, so that none of them crosses a cache line.

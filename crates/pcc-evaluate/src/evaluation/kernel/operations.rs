@@ -1,14 +1,14 @@
 //! The merged expansions of one element, as a list of operations.
 //!
 //! The union of all components' multi-indices is a prefix tree: a term is its *parent* (the same factors but for the
-//! last) times one univariate value. Only parents are computed as products; the terms below a parent that are parents of
-//! no more in their component are *leaves*, folded into a sum before it is multiplied by the parent:
+//! last) times one univariate value. Only parents are computed as products; the terms below a parent that are parents
+//! of no more in their component are *leaves*, folded into a sum before it is multiplied by the parent:
 //!
 //! f = c_0 + Σ_singles c_α φ + Σ_parents ψ_parent · (c_parent + Σ_leaves c_α φ_last).
 //!
 //! A coefficient so costs one fused multiply-add, and nothing else in the groups' inner loops. Parents are treated in
-//! *stages*, few at a time, so that their values are still in the processor's nearest memory when the components use them,
-//! one component after the other.
+//! *stages*, few at a time, so that their values are still in the processor's nearest memory when the components use
+//! them, one component after the other.
 
 use crate::polynomials::MultiIndex;
 use crate::surrogate::Surrogate;
@@ -117,8 +117,9 @@ impl Operations {
         self.steps.len() + self.products.len()
     }
 
-    /// Floating-point operations per point. A fused multiply-add counts as two. Per univariate value five; per product one; per
-    /// single and per leaf two, one less for the first leaf of a group whose parent has no coefficient; per group two.
+    /// Floating-point operations per point. A fused multiply-add counts as two. Per univariate value five; per product
+    /// one; per single and per leaf two, one less for the first leaf of a group whose parent has no coefficient; per
+    /// group two.
     pub fn flops(&self) -> usize {
         let without_initial = self.groups.iter().filter(|group| group.initial == 0.0).count();
         let sums = self.singles.len() + self.leaves.len() + self.groups.len();
@@ -245,7 +246,8 @@ mod tests {
 
     #[test]
     fn leaves_are_folded_and_coefficients_of_parents_start_the_sums() {
-        // ξ1 is a parent of ξ1 ξ2 and ξ1 ξ3; ξ1 ξ2 of ξ1 ξ2 ξ3, without a coefficient of its own in the second component.
+        // ξ1 is a parent of ξ1 ξ2 and ξ1 ξ3; ξ1 ξ2 of ξ1 ξ2 ξ3, without a coefficient of its own in the second
+        // component.
         let first =
             expansion(&[(&[0, 0, 0], 0.5), (&[1, 0, 0], 1.0), (&[1, 1, 0], 2.0), (&[1, 0, 1], 3.0), (&[0, 0, 2], 4.0)]);
         let second = expansion(&[(&[1, 1, 1], 5.0), (&[0, 1, 0], 6.0)]);
@@ -261,7 +263,8 @@ mod tests {
         let groups: Vec<(f64, u32)> = program.groups.iter().map(|group| (group.initial, group.parent)).collect();
         assert_eq!(groups, [(1.0, 0), (0.0, 4)]);
         assert_eq!(program.leaves.iter().map(|leaf| leaf.coefficient).collect::<Vec<_>>(), [2.0, 3.0, 5.0]);
-        // Four univariate values, a product, two singles, three leaves, the first of the second group a product, two groups.
+        // Four univariate values, a product, two singles, three leaves, the first of the second group a product, two
+        // groups.
         assert_eq!(program.flops(), 4 * 5 + 1 + 2 * 2 + 2 * 3 - 1 + 2 * 2);
     }
 

@@ -1,8 +1,9 @@
 //! A surrogate compiled for speed.
 //!
-//! All components are expanded in products of the same univariate polynomials, and their multi-indices overlap. The plan
-//! merges them into [`Operations`], one list per element, which are evaluated at [`crate::evaluation::BLOCK_POINTS`] points at a time, one per lane, with the vector
-//! instructions of the processor; eigenvalues and max Re λ follow in the same lanes.
+//! All components are expanded in products of the same univariate polynomials, and their multi-indices overlap. The
+//! plan merges them into [`Operations`], one list per element, which are evaluated at
+//! [`crate::evaluation::BLOCK_POINTS`] points at a time, one per lane, with the vector instructions of the processor;
+//! eigenvalues and max Re λ follow in the same lanes.
 
 use super::kernel;
 use super::lanes::Lanes;
@@ -52,7 +53,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Local variables of the element, for one element the standardized coordinates: one entry per input, one lane per point.
+    /// Local variables of the element, for one element the standardized coordinates: one entry per input, one lane per
+    /// point.
     pub fn points_mut(&mut self) -> &mut [Lanes] {
         &mut self.points
     }
@@ -64,8 +66,8 @@ impl Workspace {
 }
 
 impl Plan {
-    /// Compiles `surrogate` for the fastest instructions of this processor. Centre and scale of the components are folded into
-    /// the coefficients.
+    /// Compiles `surrogate` for the fastest instructions of this processor. Centre and scale of the components are
+    /// folded into the coefficients.
     pub fn new(surrogate: &Surrogate) -> Self {
         Self::with_instructions(surrogate, InstructionSet::best())
     }
@@ -98,10 +100,11 @@ impl Plan {
         self.most(|program| program.terms)
     }
 
-    /// Floating-point operations per point for the values of all components, a fused multiply-add counted as two: five per univariate
-    /// value, one per product of a parent; in each component two per coefficient and two per parent, but that the coefficient of
-    /// a parent, which starts its sum, costs nothing, and the first in a sum without such a start one. With several elements two per
-    /// input for the local variables, and those of the most expensive element. Roots and statistics are not counted.
+    /// Floating-point operations per point for the values of all components, a fused multiply-add counted as two: five
+    /// per univariate value, one per product of a parent; in each component two per coefficient and two per parent, but
+    /// that the coefficient of a parent, which starts its sum, costs nothing, and the first in a sum without such a
+    /// start one. With several elements two per input for the local variables, and those of the most expensive element.
+    /// Roots and statistics are not counted.
     pub fn flops(&self) -> usize {
         let maps = if self.operations.len() > 1 { 2 * self.dimension } else { 0 };
         maps + self.most(Operations::flops)

@@ -15,8 +15,8 @@ pub fn evaluate_points(surrogate: &Surrogate, plan: &Plan, points: &[&[f64]]) ->
     block
 }
 
-/// Evaluates points [`BLOCK_POINTS`] at a time, with memory of its own. Points in the same element are evaluated together, and results
-/// come in the order of the points.
+/// Evaluates points [`BLOCK_POINTS`] at a time, with memory of its own. Points in the same element are evaluated
+/// together, and results come in the order of the points.
 pub(crate) struct Evaluator<'a> {
     surrogate: &'a Surrogate,
     plan: &'a Plan,
@@ -49,8 +49,8 @@ impl<'a> Evaluator<'a> {
         Block::with_capacity(self.surrogate.component_count(), self.surrogate.modes().len(), samples)
     }
 
-    /// Evaluates `count` points. `fill` writes the standardized coordinates of the points from the given number on, one entry per
-    /// input; `visit` is given results and number of points, block by block.
+    /// Evaluates `count` points. `fill` writes the standardized coordinates of the points from the given number on, one
+    /// entry per input; `visit` is given results and number of points, block by block.
     pub fn each_block(
         &mut self,
         count: usize,
@@ -67,8 +67,8 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Evaluates `count` points and appends the results to `block`. `set_point` writes the standardized coordinates of the
-    /// point with the given number.
+    /// Evaluates `count` points and appends the results to `block`. `set_point` writes the standardized coordinates of
+    /// the point with the given number.
     pub fn evaluate(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), block: &mut Block) {
         let fill = in_lanes(count, self.point.len(), set_point);
         self.each_block(count, fill, |results, lanes| append(results, lanes, block));

@@ -1,8 +1,8 @@
 //! Eigenvalues from components in all lanes at once.
 //!
-//! Single modes and pairs, whatever they are made of, take plain loops over lanes, which compile to vector instructions;
-//! larger clusters are polynomials whose roots are found lane by lane. The values are those of [`Output::recombine`], bit by
-//! bit.
+//! Single modes and pairs, whatever they are made of, take plain loops over lanes, which compile to vector
+//! instructions; larger clusters are polynomials whose roots are found lane by lane. The values are those of
+//! [`Output::recombine`], bit by bit.
 
 use super::lanes::{BLOCK_POINTS, Lanes};
 use super::results::Results;
@@ -47,7 +47,8 @@ fn pair(mean: [&Lanes; 2], constant: [&Lanes; 2], re: [&mut Lanes; 2], im: [&mut
     }
 }
 
-/// The square roots of −c, as [`square_root`] computes them; lanes whose square would over- or underflow are done by it.
+/// The square roots of −c, as [`square_root`] computes them; lanes whose square would over- or underflow are done by
+/// it.
 #[inline(always)]
 fn square_roots(c: [&Lanes; 2], root_re: &mut Lanes, root_im: &mut Lanes) {
     let mut all_safe = true;

@@ -1,12 +1,14 @@
 //! How the samples of a question are divided into series, chunks and shards.
 //!
-//! All samples of one *series* share a region and a randomisation: every point of a sweep has a series for each replicate. Series are
-//! divided into chunks; chunks are numbered through all series, and a shard is a range of numbers.
+//! All samples of one *series* share a region and a randomisation: every point of a sweep has a series for each
+//! replicate. Series are divided into chunks; chunks are numbered through all series, and a shard is a range of
+//! numbers.
 
 use super::tally::Tally;
 use std::ops::Range;
 
-/// Samples summarised together, a multiple of [`crate::evaluation::BLOCK_POINTS`]: part of the result's definition, since it fixes the order of sums.
+/// Samples summarised together, a multiple of [`crate::evaluation::BLOCK_POINTS`]: part of the result's definition,
+/// since it fixes the order of sums.
 const CHUNK: u64 = 4096;
 
 /// More of them where there are many elements, each of which has some points of a chunk to evaluate together.

@@ -101,7 +101,8 @@ impl Findings {
         self.histograms = histograms;
     }
 
-    /// Adds what was found in the chunks that follow; nothing changes, and the answer is false, if `next` begins elsewhere.
+    /// Adds what was found in the chunks that follow; nothing changes, and the answer is false, if `next` begins
+    /// elsewhere.
     pub fn append(&mut self, next: Self, division: &Division) -> bool {
         if next.first != self.end {
             return false;
@@ -126,8 +127,9 @@ impl Findings {
         true
     }
 
-    /// Whether this could have been found under such a division: series that are complete but for the first and the last, with as many
-    /// components, modes, events and bins, and counts that add up to the numbers of samples. What [`crate::evaluation::Survey::run`] finds always is; what a file says need not be.
+    /// Whether this could have been found under such a division: series that are complete but for the first and the
+    /// last, with as many components, modes, events and bins, and counts that add up to the numbers of samples. What
+    /// [`crate::evaluation::Survey::run`] finds always is; what a file says need not be.
     pub fn fits(&self, division: &Division) -> bool {
         let per_series = division.chunks_per_series();
         if self.first > self.end || self.end > division.chunks() {

@@ -58,8 +58,8 @@ impl Histogram {
         }
     }
 
-    /// The value that a share `level` of the samples does not exceed, interpolated inside its bin; `None` if it lies outside the
-    /// bins or there are no samples.
+    /// The value that a share `level` of the samples does not exceed, interpolated inside its bin; `None` if it lies
+    /// outside the bins or there are no samples.
     pub fn quantile(&self, bins: &Bins, level: f64) -> Option<f64> {
         let rank = level * self.samples() as f64;
         let mut before = self.below as f64;

@@ -1,13 +1,13 @@
 //! Streaming Monte Carlo on a surrogate.
 //!
 //! Samples are numbered; sample i is the same whoever computes it. Fixed chunks of samples are summarised on all cores
-//! and combined in a fixed order, so counts and moments do not depend on the number of threads, and memory not on the number of
-//! samples.
+//! and combined in a fixed order, so counts and moments do not depend on the number of threads, and memory not on the
+//! number of samples.
 
 use super::question::Question;
 use super::survey::{Survey, Surveyed};
 use crate::components::Summary;
-use crate::evaluation::EvalError;
+use crate::evaluation::error::EvalError;
 use crate::foundation::{InstructionSet, Interrupted, Observer};
 use crate::surrogate::Surrogate;
 

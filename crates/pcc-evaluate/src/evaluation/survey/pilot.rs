@@ -5,7 +5,7 @@ use super::question::{Bins, Condition, Question};
 use super::survey::{Survey, Surveyed};
 use super::survey_error::SurveyError;
 use crate::components::Summary;
-use crate::evaluation::EvalError;
+use crate::evaluation::error::EvalError;
 use crate::foundation::{InstructionSet, Interrupted, Silent};
 use crate::probability::statistics::Moments;
 use crate::surrogate::Surrogate;
@@ -18,7 +18,8 @@ const SAMPLES: u64 = 4096;
 /// Bins of a histogram for people, about.
 const BINS: f64 = 40.0;
 
-/// Bins of a histogram that quantiles are read from: of twice the range of the pilot, so a quantile is found to 1/5000 of that range.
+/// Bins of a histogram that quantiles are read from: of twice the range of the pilot, so a quantile is found to 1/5000
+/// of that range.
 const FINE_BINS: u32 = 10_000;
 
 /// The smallest width of bins, relative to the values: where a quantity does not vary.
@@ -93,8 +94,8 @@ impl Pilot {
     }
 }
 
-/// The nearest number above that is 1, 2 or 5 times a power of ten. By decimal digits, which are the same on all machines, where
-/// logarithms and powers are not.
+/// The nearest number above that is 1, 2 or 5 times a power of ten. By decimal digits, which are the same on all
+/// machines, where logarithms and powers are not.
 fn readable(step: f64) -> f64 {
     let digits = format!("{step:e}");
     let power = digits.split_once('e').and_then(|(_, exponent)| format!("1e{exponent}").parse().ok()).unwrap_or(step);

@@ -1,6 +1,7 @@
 //! What is asked of a surrogate: how many samples, drawn how and from where, and what to count.
 //!
-//! A [`Question`] is plain text and numbers, as typed and as kept in part files; [`crate::evaluation::Survey`] checks it against a surrogate.
+//! A [`Question`] is plain text and numbers, as typed and as kept in part files; [`crate::evaluation::Survey`] checks
+//! it against a surrogate.
 
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +89,8 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Value number `number`, from 0, to 15 digits if steps are much larger: that is how people write it; the last is exactly `to`.
+    /// Value number `number`, from 0, to 15 digits if steps are much larger: that is how people write it; the last is
+    /// exactly `to`.
     pub fn value(&self, number: u32) -> f64 {
         let last = self.points.saturating_sub(1).max(1);
         match number {

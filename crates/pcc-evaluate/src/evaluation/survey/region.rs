@@ -42,7 +42,8 @@ impl Region {
         *self == Self::whole(self.lower.len())
     }
 
-    /// The standardized coordinate at a place u ∈ (0, 1) inside the interval of an input. In the whole domain 2u − 1 without rounding.
+    /// The standardized coordinate at a place u ∈ (0, 1) inside the interval of an input. In the whole domain 2u − 1
+    /// without rounding.
     #[inline(always)]
     pub fn place(&self, input: usize, unit: f64) -> f64 {
         self.width[input].mul_add(unit, self.lower[input])

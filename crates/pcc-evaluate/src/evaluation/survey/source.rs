@@ -18,8 +18,8 @@ pub(crate) enum Source {
 }
 
 impl Source {
-    /// Replicate number `replicate`, of `points` points in `dimension` dimensions; `None` if the sampler cannot have so many
-    /// points or dimensions.
+    /// Replicate number `replicate`, of `points` points in `dimension` dimensions; `None` if the sampler cannot have so
+    /// many points or dimensions.
     pub fn new(sampler: Sampler, seed: u64, replicate: u32, points: u64, dimension: usize) -> Option<Self> {
         let key = seed_key(seed);
         match sampler {

@@ -1,7 +1,8 @@
 //! A question put to a surrogate, worked off in chunks of samples.
 //!
 //! Samples are addressed by number, counts are integers, and moments are combined along a fixed tree
-//! ([`crate::probability::statistics::MergeTree`]), so the answer depends neither on the number of threads nor on shards.
+//! ([`crate::probability::statistics::MergeTree`]), so the answer depends neither on the number of threads nor on
+//! shards.
 
 use super::division::Division;
 use super::findings::Findings;
@@ -12,7 +13,7 @@ use super::region::{Region, Regions};
 use super::source::{Drawing, Source};
 use super::survey_error::SurveyError;
 use super::tally::{Adding, Gathering, Tally, Watch};
-use crate::evaluation::EvalError;
+use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::Evaluator;
@@ -85,7 +86,8 @@ impl<'a> Survey<'a> {
     ///
     /// # Errors
     ///
-    /// [`SurveyError`]: an input or a quantity that does not exist, bounds outside the domain, numbers that do not fit each other.
+    /// [`SurveyError`]: an input or a quantity that does not exist, bounds outside the domain, numbers that do not fit
+    /// each other.
     pub fn new(
         surrogate: &'a Surrogate,
         question: &'a Question,
@@ -182,7 +184,8 @@ impl<'a> Survey<'a> {
 struct Worker<'s> {
     survey: &'s Survey<'s>,
     evaluator: Evaluator<'s>,
-    /// Taken from those that are not in use, and given back: integers, so it does not matter which chunks are counted where.
+    /// Taken from those that are not in use, and given back: integers, so it does not matter which chunks are counted
+    /// where.
     histograms: Vec<Histogram>,
     unused: &'s Mutex<Vec<Vec<Histogram>>>,
 }

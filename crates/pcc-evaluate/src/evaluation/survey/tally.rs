@@ -1,7 +1,7 @@
 //! Counts and moments of many samples, gathered from blocks of lanes.
 //!
-//! Moments of a chunk come from sums of deviations from the mean of its first block, in 16 interleaved parts, whatever the width of
-//! the processor's vectors: the bits are the same everywhere.
+//! Moments of a chunk come from sums of deviations from the mean of its first block, in 16 interleaved parts, whatever
+//! the width of the processor's vectors: the bits are the same everywhere.
 
 use super::quantity::{Quantity, damping_ratios};
 use crate::components::{ModeSummary, Summary};

@@ -62,7 +62,8 @@ impl PartialOrd for MultiIndex {
     }
 }
 
-/// A set of distinct multi-indices in canonical order. Copies share their memory: elements and components often have the same.
+/// A set of distinct multi-indices in canonical order. Copies share their memory: elements and components often have
+/// the same.
 ///
 /// # Examples
 ///

@@ -32,7 +32,8 @@ impl Marginal {
         }
     }
 
-    /// The parameters that say which one of its laws it is, with their names in study files, in the order of these files.
+    /// The parameters that say which one of its laws it is, with their names in study files, in the order of these
+    /// files.
     pub fn parameters(&self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Uniform(uniform) => vec![("lower", uniform.lower()), ("upper", uniform.upper())],

@@ -24,8 +24,8 @@ pub fn philox_4x32_10(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
     ten_rounds(counter.map(u64::from), key).map(|word| word as u32)
 }
 
-/// The same on words that are the lower halves of numbers of 64 bits, whatever the upper halves hold: vector instructions multiply
-/// lower halves to numbers of 64 bits, and nothing has to be cut off in between.
+/// The same on words that are the lower halves of numbers of 64 bits, whatever the upper halves hold: vector
+/// instructions multiply lower halves to numbers of 64 bits, and nothing has to be cut off in between.
 #[inline(always)]
 pub(super) fn ten_rounds(mut counter: [u64; 4], mut key: [u32; 2]) -> [u64; 4] {
     for round in 0..ROUNDS {

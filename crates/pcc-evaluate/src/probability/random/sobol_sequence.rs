@@ -65,8 +65,8 @@ impl SobolSequence {
 
     /// Writes the cells, in 0…2⁵² − 1, of points `first`, `first` + 1, … in dimension `dimension` (from 0).
     ///
-    /// [`unit_interval`](crate::probability::random::unit_interval) maps a cell to its coordinate in (0, 1). Points are numbered
-    /// modulo 2⁵². Any `first` and any length are right; multiples of 32 are fastest.
+    /// [`unit_interval`](crate::probability::random::unit_interval) maps a cell to its coordinate in (0, 1). Points are
+    /// numbered modulo 2⁵². Any `first` and any length are right; multiples of 32 are fastest.
     ///
     /// # Panics
     ///

@@ -4,9 +4,9 @@ use super::philox::ten_rounds;
 use super::stream::{Purpose, counter, key};
 use super::uniform::{UNIT_BITS, unit_interval};
 
-/// Numbers 2 `pair` and 2 `pair` + 1 of the streams of index `first`, `first` + 1, …, one stream per lane: the same bits as
-/// [`Stream::next_unit`](super::Stream::next_unit). No lane depends on another, so that this compiles to vector instructions where the
-/// caller allows them.
+/// Numbers 2 `pair` and 2 `pair` + 1 of the streams of index `first`, `first` + 1, …, one stream per lane: the same
+/// bits as [`Stream::next_unit`](super::Stream::next_unit). No lane depends on another, so that this compiles to vector
+/// instructions where the caller allows them.
 #[inline(always)]
 pub fn unit_pairs<const LANES: usize>(
     seed: u64,

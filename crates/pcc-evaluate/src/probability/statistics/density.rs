@@ -1,8 +1,8 @@
 //! Densities from samples, for pictures.
 
-/// A histogram as a density: the middles of `bins` equal bins from `lower` to `upper` with the share of all `values` in the bin
-/// over its width. Values outside, and those that are not finite, count in the total only, so what is seen keeps its height.
-/// Empty if there are no values or no bins, or if the interval is.
+/// A histogram as a density: the middles of `bins` equal bins from `lower` to `upper` with the share of all `values` in
+/// the bin over its width. Values outside, and those that are not finite, count in the total only, so what is seen
+/// keeps its height. Empty if there are no values or no bins, or if the interval is.
 ///
 /// # Examples
 ///

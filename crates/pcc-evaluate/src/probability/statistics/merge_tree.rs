@@ -9,8 +9,8 @@ pub trait Merge {
     fn merge(&mut self, next: &Self);
 }
 
-/// Results of the items of a range, combined along a fixed binary tree over all items: neighbours 2i and 2i + 1 of one level make item
-/// i of the next.
+/// Results of the items of a range, combined along a fixed binary tree over all items: neighbours 2i and 2i + 1 of one
+/// level make item i of the next.
 ///
 /// Floating-point sums depend on their order. Here the order is that of the tree, whatever parts a range was divided
 /// into: a part holds only nodes whose items it has all of, at most two per level, and appending what follows
@@ -113,8 +113,8 @@ impl<T: Merge> MergeTree<T> {
         self.trees.iter().map(move |tree| (range(tree), &tree.value))
     }
 
-    /// Whether the trees follow one another without gaps from `first`, none is half of a tree that is complete, and no number overflows:
-    /// what [`Self::push`] and [`Self::append`] keep true, and a file may not.
+    /// Whether the trees follow one another without gaps from `first`, none is half of a tree that is complete, and no
+    /// number overflows: what [`Self::push`] and [`Self::append`] keep true, and a file may not.
     pub fn is_consistent(&self) -> bool {
         let mut end = Some(self.first);
         let follows = self.trees.iter().all(|tree| {

@@ -83,8 +83,8 @@ impl Moments {
         }
     }
 
-    /// The moments of `count` numbers with these sums of their deviations from `shift`, and of their squares: exact but for rounding
-    /// where `shift` is among the numbers or close to their mean.
+    /// The moments of `count` numbers with these sums of their deviations from `shift`, and of their squares: exact but
+    /// for rounding where `shift` is among the numbers or close to their mean.
     pub fn from_sums(count: u64, shift: f64, sum: f64, squares: f64, minimum: f64, maximum: f64) -> Self {
         if count == 0 {
             return Self::default();
@@ -109,7 +109,8 @@ impl Moments {
         self.maximum = if other.maximum > self.maximum { other.maximum } else { self.maximum };
     }
 
-    /// Whether these can be the moments of so many numbers: what this crate computes always are; what a file says need not be.
+    /// Whether these can be the moments of so many numbers: what this crate computes always are; what a file says need
+    /// not be.
     pub fn are_of(&self, count: u64) -> bool {
         // A mean has one rounding per number and merge, which is less than this share of the range.
         let slack = 1e-6 * (self.minimum.abs() + self.maximum.abs());

@@ -41,7 +41,8 @@ impl Proportion {
     /// # Examples
     ///
     /// ```
-    /// let interval = pcc_evaluate::probability::statistics::Proportion { hits: 0, samples: 100 }.wilson(0.95);
+    /// use pcc_evaluate::probability::statistics::Proportion;
+    /// let interval = Proportion { hits: 0, samples: 100 }.wilson(0.95);
     /// assert_eq!(interval.lower, 0.0);
     /// assert!((interval.upper - 0.036993).abs() < 1e-5);
     /// ```
@@ -70,7 +71,8 @@ impl Proportion {
     /// # Examples
     ///
     /// ```
-    /// let interval = pcc_evaluate::probability::statistics::Proportion { hits: 0, samples: 100 }.clopper_pearson(0.95);
+    /// use pcc_evaluate::probability::statistics::Proportion;
+    /// let interval = Proportion { hits: 0, samples: 100 }.clopper_pearson(0.95);
     /// assert_eq!(interval.lower, 0.0);
     /// assert!((interval.upper - (1.0 - 0.025f64.powf(0.01))).abs() < 1e-12);
     /// ```
@@ -140,8 +142,8 @@ mod tests {
         sum
     }
 
-    /// Newcombe (1998), table I, method 5, <https://doi.org/10.1002/(SICI)1097-0258(19980430)17:8%3C857::AID-SIM777%3E3.0.CO;2-E>:
-    /// four decimals.
+    /// Newcombe (1998), table I, method 5,
+    /// <https://doi.org/10.1002/(SICI)1097-0258(19980430)17:8%3C857::AID-SIM777%3E3.0.CO;2-E>: four decimals.
     #[test]
     fn clopper_pearson_equals_published_values() {
         for (hits, samples, lower, upper) in
@@ -216,8 +218,8 @@ mod tests {
         assert_eq!((interval.lower, interval.upper), (0.0, 1.0));
     }
 
-    /// Newcombe (1998), table I, method 3, <https://doi.org/10.1002/(SICI)1097-0258(19980430)17:8%3C857::AID-SIM777%3E3.0.CO;2-E>:
-    /// four decimals.
+    /// Newcombe (1998), table I, method 3,
+    /// <https://doi.org/10.1002/(SICI)1097-0258(19980430)17:8%3C857::AID-SIM777%3E3.0.CO;2-E>: four decimals.
     #[test]
     fn wilson_equals_published_values() {
         for (hits, samples, lower, upper) in

@@ -3,8 +3,8 @@
 use super::proportion::{Interval, Proportion};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Hits, or misses, of all replicates together below which their spread is no measure: with 16 replicates and independent samples
-/// Student's interval alone covers 88 to 93 % at 3 to 8 hits instead of 95 %.
+/// Hits, or misses, of all replicates together below which their spread is no measure: with 16 replicates and
+/// independent samples Student's interval alone covers 88 to 93 % at 3 to 8 hits instead of 95 %.
 const FEW: u64 = 20;
 
 /// A proportion with what is not known of it.
@@ -19,15 +19,16 @@ pub struct Share {
 }
 
 impl Share {
-    /// From replicates of equal size, whose samples need not be independent of each other, but replicates are. With the mean p̄ of
-    /// their proportions and their standard deviation s, R of them: p̄ ± t s/√R with the quantile t of Student's law of R − 1 degrees
-    /// of freedom, cut off at 0 and 1.
+    /// From replicates of equal size, whose samples need not be independent of each other, but replicates are. With the
+    /// mean p̄ of their proportions and their standard deviation s, R of them: p̄ ± t s/√R with the quantile t of
+    /// Student's law of R − 1 degrees of freedom, cut off at 0 and 1.
     ///
-    /// Of few hits, or misses, the spread of replicates says little: the interval then holds Wilson's of all samples, too.
+    /// Of few hits, or misses, the spread of replicates says little: the interval then holds Wilson's of all samples,
+    /// too.
     ///
-    /// A single replicate is taken for independent samples: standard error √(p(1 − p)/n), Wilson's interval. So are replicates that
-    /// all agree: their spread says nothing then. That is cautious for samples that cover the domain more evenly than independent ones.
-    /// Without replicates the interval is \[0, 1\].
+    /// A single replicate is taken for independent samples: standard error √(p(1 − p)/n), Wilson's interval. So are
+    /// replicates that all agree: their spread says nothing then. That is cautious for samples that cover the domain
+    /// more evenly than independent ones. Without replicates the interval is \[0, 1\].
     ///
     /// # Examples
     ///

@@ -17,8 +17,8 @@
 
 use super::proportion::{Interval, Proportion};
 
-/// Share of the error probability α = 1 − level that is left to each of the two discordant probabilities: about a quarter
-/// to either side of each.
+/// Share of the error probability α = 1 − level that is left to each of the two discordant probabilities: about a
+/// quarter to either side of each.
 const ERROR_SHARE_OF_DISCORDANCE: f64 = 0.49;
 
 /// Share of α that is left to the surrogate's own proportion. Little is enough where samples of the surrogate cost
@@ -64,8 +64,8 @@ impl DiscordantCounts {
     /// max(0, s⁻ − a⁺ + b⁻) ≤ p ≤ min(1, s⁺ − a⁻ + b⁺).
     ///
     /// Each interval misses its probability with at most its error, so by Bonferroni's inequality one or more of them
-    /// miss with at most 0.02 α + 2 · 0.49 α = α, however they depend on each other: both discordant counts come from the
-    /// same points. When none misses, p = p_s − P(falsely stable) + P(falsely unstable) lies between the two sides.
+    /// miss with at most 0.02 α + 2 · 0.49 α = α, however they depend on each other: both discordant counts come from
+    /// the same points. When none misses, p = p_s − P(falsely stable) + P(falsely unstable) lies between the two sides.
     ///
     /// Without fresh points the bound is \[0, 1\].
     pub fn bound(self, surrogate: Proportion, level: f64) -> Interval {

@@ -207,7 +207,8 @@ pub enum CommandFailure {
 }
 
 impl CommandFailure {
-    /// Whether the program was not run at all, or its end not seen: something is wrong with the settings or the machine.
+    /// Whether the program was not run at all, or its end not seen: something is wrong with the settings or the
+    /// machine.
     pub fn is_of_machine(&self) -> bool {
         let may_pass = matches!(self, Self::Folder { .. } | Self::NotStarted { .. } | Self::Lost { .. });
         may_pass || self.is_never_to_run()

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use std::{io, thread};
 
-/// Sleeps between looks at a process: one part in 64 of the time it has taken, within these bounds. Short runs lose less than a
-/// hundredth of their time, and long ones cost nothing.
+/// Sleeps between looks at a process: one part in 64 of the time it has taken, within these bounds. Short runs lose
+/// less than a hundredth of their time, and long ones cost nothing.
 const SHORTEST_PAUSE: Duration = Duration::from_millis(1);
 const LONGEST_PAUSE: Duration = Duration::from_millis(20);
 const PAUSES_PER_TIME: u32 = 64;

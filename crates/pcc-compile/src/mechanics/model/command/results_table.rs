@@ -36,6 +36,14 @@ pub struct ResultRow {
     pub answer: Result<Vec<Complex<f64>>, String>,
 }
 
+impl ResultRow {
+    /// The answer to run number `run` of a design, at `point` in physical units: eigenvalues in 1/s. It has no table, and
+    /// line 0.
+    pub fn answer(run: u64, point: &[f64], eigenvalues: Vec<Complex<f64>>) -> Self {
+        Self { line: 0, run: Some(run), inputs: Some(point.to_vec()), answer: Ok(eigenvalues) }
+    }
+}
+
 /// Reads the runs of a table that are answered: rows with neither eigenvalues nor an error are left out. A row with an
 /// error is a failed run, whatever else it says. A run may have several rows.
 ///

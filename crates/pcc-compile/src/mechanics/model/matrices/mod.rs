@@ -1,8 +1,8 @@
-//! Models by matrices of the user's: entries are numbers and expressions of the inputs, or terms f(inputs) · K_i with matrices from
-//! files.
+//! Models by matrices of the user's: entries are numbers and expressions of the inputs, or terms f(inputs) · K_i with
+//! matrices from files.
 //!
-//! Second order: M ü + (C + G) u̇ + (K + N) u = 0; first order: ẋ = A x. Expressions are compiled once and differentiated
-//! symbolically, so derivatives of the state matrix by every input come with each run.
+//! Second order: M ü + (C + G) u̇ + (K + N) u = 0; first order: ẋ = A x. Expressions are compiled once and
+//! differentiated symbolically, so derivatives of the state matrix by every input come with each run.
 
 mod assembly;
 mod compile;
