@@ -1,7 +1,6 @@
 //! Defaults of a study: at most one formula in the number of inputs r each.
 
 use super::DesignKind;
-use super::model::Kind;
 use crate::fitting::fit::FitMethod;
 use crate::fitting::fit::gpc::PAPERS_LIMIT;
 use crate::fitting::fit::method::Design;
@@ -9,14 +8,6 @@ use crate::mechanics::spectrum::{Modes, Target};
 
 pub(super) const SEED: u64 = 1;
 pub(super) const MODES: Modes = Modes::All;
-
-/// The paper's for its clutch, else what needs fewer runs.
-pub(super) fn target(kind: Kind) -> Target {
-    match kind {
-        Kind::Clutch => Target::Eigenvalues,
-        Kind::Matrices | Kind::Command | Kind::Table => Target::Invariants,
-    }
-}
 
 /// Processes of a program that go on at once.
 pub(super) const JOBS: i64 = 1;

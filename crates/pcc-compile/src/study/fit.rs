@@ -4,8 +4,9 @@ use toml::Spanned;
 
 use super::defaults;
 use super::error::StudyError;
+use super::model::ModelSettings;
 use super::raw::{FitValue, Ordered};
-use super::settings::{Derivatives, FitSettings, ModelSettings};
+use super::settings::{Derivatives, FitSettings};
 use super::validate::{Lines, alternatives};
 use crate::fitting::fit::FitMethod;
 use crate::fitting::fit::method::{Design, Domain, Entry, Given, Key, METHODS, Value};

@@ -5,19 +5,16 @@ mod error;
 mod file;
 mod fit;
 mod identity;
-mod matrices;
 mod model;
 mod print;
-mod print_model;
 mod raw;
 mod settings;
 mod validate;
 
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
-pub use settings::{
-    Command, Derivatives, DesignKind, DesignSettings, FitSettings, ModelSettings, SpectrumSettings, Table,
-};
+pub use model::{Command, ModelSettings, Table};
+pub use settings::{Derivatives, DesignKind, DesignSettings, FitSettings, SpectrumSettings};
 
 use crate::mechanics::model::matrices::Matrices;
 use crate::mechanics::model::{Clutch, Model, ModelError, TableModel};

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::print_model::{self, unit_of};
+use super::model::{self, unit_of};
 use super::{DesignKind, STUDY_FORMAT, Study};
 use crate::fitting::fit::method::{Design, MethodSetting, Value};
 use crate::mechanics::spectrum::{Modes, Target};
@@ -15,7 +15,7 @@ pub(super) fn study(study: &Study) -> String {
     file.line("format", STUDY_FORMAT, "of this file");
     file.line("name", format!("{:?}", study.name), "also names the files built from it");
     file.line("seed", study.seed, "of the design");
-    print_model::model(&mut file, &study.model);
+    model::print(&mut file, &study.model);
     inputs(&mut file, study);
 
     file.table("spectrum");

@@ -59,6 +59,36 @@ pub(super) struct Model {
     pub version: Option<Spanned<String>>,
 }
 
+impl Model {
+    /// The keys that only some kinds have, as far as they are given, with the bytes where their values start.
+    pub fn given(&self) -> Vec<(&'static str, usize)> {
+        fn start<T>(value: &Option<Spanned<T>>) -> Option<usize> {
+            value.as_ref().map(|value| value.span().start)
+        }
+        let keys = [
+            ("let", start(&self.helpers)),
+            ("M", start(&self.mass)),
+            ("C", start(&self.damping)),
+            ("K", start(&self.stiffness)),
+            ("G", start(&self.gyroscopic)),
+            ("N", start(&self.circulatory)),
+            ("A", start(&self.state)),
+            ("command", start(&self.command)),
+            ("shell", start(&self.shell)),
+            ("mode", start(&self.mode)),
+            ("jobs", start(&self.jobs)),
+            ("timeout", start(&self.timeout)),
+            ("retries", start(&self.retries)),
+            ("work", start(&self.work)),
+            ("keep", start(&self.keep)),
+            ("eigenvalues", start(&self.eigenvalues)),
+            ("on_failure", start(&self.on_failure)),
+            ("version", start(&self.version)),
+        ];
+        keys.into_iter().filter_map(|(key, start)| Some((key, start?))).collect()
+    }
+}
+
 /// A program and its arguments, or a line for the shell.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(

@@ -78,8 +78,13 @@ pub(super) struct Lines<'a> {
 
 impl Lines<'_> {
     pub(super) fn place<T>(&self, key: impl Into<String>, value: &Spanned<T>) -> Place {
-        let before = &self.text.as_bytes()[..value.span().start.min(self.text.len())];
-        Place { key: key.into(), line: 1 + before.iter().filter(|&&byte| byte == b'\n').count() }
+        Place { key: key.into(), line: self.line(value.span().start) }
+    }
+
+    /// The line of a byte of the text, from 1.
+    pub(super) fn line(&self, start: usize) -> usize {
+        let before = &self.text.as_bytes()[..start.min(self.text.len())];
+        1 + before.iter().filter(|&&byte| byte == b'\n').count()
     }
 
     /// The place of a key that is not in the file.
@@ -194,7 +199,7 @@ impl Lines<'_> {
     fn spectrum(&self, raw: raw::Spectrum, kind: Kind) -> Result<SpectrumSettings, StudyError> {
         let target = match raw.target {
             Some(word) => self.word("spectrum.target", &word, &TARGETS.map(|target| (target.name(), target)))?,
-            None => defaults::target(kind),
+            None => kind.default_target(),
         };
         let modes = match raw.modes {
             Some(modes) => self.modes(modes)?,

@@ -1,13 +1,22 @@
-//! The matrices of a study, from TOML values of many shapes to terms.
+//! Models that are matrices: from TOML values of many shapes to terms, and back.
 
-use super::error::StudyError;
-use super::raw;
-use super::validate::Lines;
-use crate::mechanics::model::matrices::{Entry, Form, Layout, MatricesError, Matrix, Role, Term, read_matrix_market};
+use super::{ModelSettings, quoted};
+use crate::mechanics::model::matrices::{
+    Description, Entry, Form, Layout, Matrices, MatricesError, Matrix, Role, Term, read_matrix_market,
+};
+use crate::study::error::StudyError;
+use crate::study::print::{Printer, float};
+use crate::study::raw;
+use crate::study::validate::Lines;
+use pcc_evaluate::probability::inputs::InputSpace;
+use std::fmt::Write;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 use toml::{Spanned, Table, Value};
+
+/// The keys of the kind.
+pub(super) const KEYS: [&str; 7] = ["let", "M", "C", "K", "G", "N", "A"];
 
 /// A matrix of 500 rows written out in full has some 7 megabytes.
 const LARGEST_FILE: u64 = 1 << 28;
@@ -166,5 +175,131 @@ fn file(value: Value, folder: &Path) -> Result<Layout, MatricesError> {
     match read_matrix_market(&text) {
         Ok(matrix) => Ok(Layout::File { name, matrix }),
         Err(cause) => Err(MatricesError::MatrixMarket { file: name, cause: Box::new(cause) }),
+    }
+}
+
+impl Lines<'_> {
+    pub(super) fn description(
+        &self,
+        raw: raw::Model,
+        constants: Vec<(String, f64)>,
+        inputs: &InputSpace,
+        folder: &Path,
+    ) -> Result<ModelSettings, StudyError> {
+        let place = self.place("model", &raw.kind);
+        let helpers_place = raw.helpers.as_ref().map(|helpers| self.place("model.let", helpers));
+        let helpers = raw.helpers.map_or(Vec::new(), |helpers| self.helpers(helpers.into_inner()));
+        let values = [raw.mass, raw.damping, raw.stiffness, raw.gyroscopic, raw.circulatory, raw.state];
+        let mut matrices = Vec::new();
+        let mut places = Vec::new();
+        for (role, value) in Role::ALL.into_iter().zip(values) {
+            if let Some(value) = value {
+                places.push((role.name(), self.place(format!("model.{}", role.name()), &value)));
+                matrices.push(self.matrix(role, value, folder)?);
+            }
+        }
+        let description = Description { constants, helpers, matrices };
+        // Compiled once here, so that a study that is read is one that runs.
+        Matrices::new(&description, &inputs.names().collect::<Vec<_>>()).map_err(|cause| {
+            let of_matrix = |name: &str| places.iter().find(|(matrix, _)| *matrix == name).map(|(_, place)| place);
+            let found = match cause.matrix() {
+                Some(name) => of_matrix(name),
+                None if matches!(cause, MatricesError::Name { table: "model.let", .. }) => helpers_place.as_ref(),
+                None => None,
+            };
+            StudyError::Matrices { place: found.unwrap_or(&place).clone(), cause: Box::new(cause) }
+        })?;
+        Ok(ModelSettings::Matrices(Box::new(description)))
+    }
+}
+
+pub(super) fn print(file: &mut Printer, description: &Description) {
+    for matrix in &description.matrices {
+        let name = matrix.role.name();
+        match &matrix.terms[..] {
+            [Term { factor: None, form: Form::General, layout: Layout::Rows(rows) }] => {
+                let rows: Vec<String> = rows.iter().map(|row| format!("    {},\n", listed(row))).collect();
+                file.line(name, format!("[\n{}]", rows.concat()), "");
+            }
+            [term] => file.line(name, inlined(term), ""),
+            terms => {
+                let terms: Vec<String> = terms.iter().map(|term| format!("    {},\n", inlined(term))).collect();
+                file.line(name, format!("[\n{}]", terms.concat()), "");
+            }
+        }
+    }
+}
+
+pub(super) fn print_helpers(file: &mut Printer, description: &Description) {
+    if !description.helpers.is_empty() {
+        file.table("model.let");
+    }
+    for (name, text) in &description.helpers {
+        file.line(name, quoted(text), "");
+    }
+}
+
+/// A term as a table in one line.
+fn inlined(term: &Term) -> String {
+    let mut parts = Vec::new();
+    match &term.layout {
+        Layout::Rows(rows) => {
+            let rows: Vec<String> = rows.iter().map(|row| listed(row)).collect();
+            parts.push(format!("rows = [{}]", rows.join(", ")));
+        }
+        Layout::Diagonal(entries) => parts.push(format!("diagonal = {}", listed(entries))),
+        Layout::Entries { size, list } => {
+            let entries: Vec<String> =
+                list.iter().map(|(row, column, value)| format!("[{row}, {column}, {}]", written(value))).collect();
+            parts.push(format!("size = {size}, entries = [{}]", entries.join(", ")));
+        }
+        Layout::File { name, .. } => parts.push(format!("file = {}", quoted(name))),
+    }
+    if term.form != Form::General {
+        parts.push(format!("form = {:?}", term.form.name()));
+    }
+    if let Some(factor) = &term.factor {
+        parts.push(format!("factor = {}", written(factor)));
+    }
+    format!("{{ {} }}", parts.join(", "))
+}
+
+fn listed(entries: &[Entry]) -> String {
+    format!("[{}]", entries.iter().map(written).collect::<Vec<_>>().join(", "))
+}
+
+fn written(entry: &Entry) -> String {
+    match entry {
+        Entry::Number(value) => float(*value),
+        Entry::Expression(text) => quoted(text),
+    }
+}
+
+pub(super) fn identify(text: &mut String, description: &Description) {
+    for (name, value) in &description.constants {
+        let _ = writeln!(text, "constant {name} {value:?}");
+    }
+    for (name, expression) in &description.helpers {
+        let _ = writeln!(text, "let {name} {expression:?}");
+    }
+    for matrix in &description.matrices {
+        for Term { factor, form, layout } in &matrix.terms {
+            let _ = write!(text, "{} {} ", matrix.role.name(), form.name());
+            match factor {
+                None => text.push_str("1 "),
+                Some(factor) => {
+                    let _ = write!(text, "{factor:?} ");
+                }
+            }
+            let _ = match layout {
+                Layout::Rows(rows) => writeln!(text, "rows {rows:?}"),
+                Layout::Diagonal(list) => writeln!(text, "diagonal {list:?}"),
+                Layout::Entries { size, list } => writeln!(text, "entries {size} {list:?}"),
+                // Not the name of the file, but what is in it.
+                Layout::File { matrix, .. } => {
+                    writeln!(text, "file {} {} {:?}", matrix.rows, matrix.columns, matrix.entries)
+                }
+            };
+        }
     }
 }

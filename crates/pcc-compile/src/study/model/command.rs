@@ -1,0 +1,169 @@
+//! Models that are programs.
+
+use super::{ModelSettings, Table, quoted, table};
+use crate::mechanics::model::command::{CommandModel, CommandSettings, Keep, Mode};
+use crate::study::defaults;
+use crate::study::error::StudyError;
+use crate::study::print::{Printer, float};
+use crate::study::raw;
+use crate::study::validate::Lines;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use toml::Spanned;
+
+/// The keys that say how a program is run; what it answers has those of tables.
+pub(super) const KEYS: [&str; 8] = ["command", "shell", "mode", "jobs", "timeout", "retries", "work", "keep"];
+
+/// More processes at once are a mistake.
+const MOST_JOBS: i64 = 10_000;
+
+/// A program that answers eigenvalues.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Command {
+    /// The program and its arguments; `{study}` stands for the folder of the study, `{work}` for that of the run.
+    pub arguments: Vec<String>,
+    /// Whether the one argument is a line for the shell.
+    pub shell: bool,
+    /// One run per process, or many.
+    pub mode: Mode,
+    /// What is asked and answered.
+    pub answers: Table,
+    /// Processes that go on at once, at least 1.
+    pub jobs: usize,
+    /// Seconds after which a process is stopped.
+    pub timeout: Option<f64>,
+    /// Further attempts at a run that failed.
+    pub retries: u32,
+    /// Where the folders of runs are.
+    pub work_folder: String,
+    /// Which of them are kept.
+    pub keep: Keep,
+    /// The folder of the study.
+    pub study_folder: PathBuf,
+}
+
+impl Command {
+    /// The program, ready to run at points of these inputs.
+    pub(in crate::study) fn program(&self, inputs: &[&str]) -> CommandModel {
+        CommandModel::new(CommandSettings {
+            command: self.arguments.clone(),
+            shell: self.shell,
+            mode: self.mode,
+            jobs: self.jobs,
+            timeout: self.timeout.map(Duration::from_secs_f64),
+            retries: self.retries,
+            eigenvalues: self.answers.eigenvalues,
+            work_folder: PathBuf::from(&self.work_folder),
+            keep: self.keep,
+            // Arguments and working folders need it whole, wherever the program is started.
+            study_folder: std::path::absolute(&self.study_folder).unwrap_or_else(|_| self.study_folder.clone()),
+            inputs: inputs.iter().map(|&name| name.to_owned()).collect(),
+            constants: self.answers.constants.clone(),
+        })
+    }
+}
+
+impl Lines<'_> {
+    pub(super) fn command(
+        &self,
+        mut raw: raw::Model,
+        constants: Vec<(String, f64)>,
+        folder: &Path,
+    ) -> Result<ModelSettings, StudyError> {
+        let line = self.place("model.kind", &raw.kind).line;
+        let meaning = "the program and its arguments, like [\"python3\", \"{study}/model.py\"]";
+        let command = raw.command.take().ok_or(StudyError::MissingKey { line, key: "command", meaning })?;
+        let shell = raw.shell.take().is_some_and(Spanned::into_inner);
+        let span = command.span();
+        let arguments = match command.into_inner() {
+            raw::Command::Arguments(list) => Spanned::new(span, list),
+            raw::Command::Line(line) if shell => Spanned::new(span, vec![line]),
+            raw::Command::Line(line) => {
+                let expected = "a list like [\"python3\", \"{study}/model.py\"]; or add shell = true";
+                return Err(self.out_of_range("model.command", &Spanned::new(span, line), expected));
+            }
+        };
+        let has_program = arguments.get_ref().first().is_some_and(|program| !program.is_empty());
+        let has_nul = arguments.get_ref().iter().any(|argument| argument.contains('\0'));
+        if !has_program || has_nul || (shell && arguments.get_ref().len() != 1) {
+            let expected = if shell {
+                "one line for the shell, like \"solve params.json > log.txt\""
+            } else {
+                "a program and its arguments, like [\"python3\", \"{study}/model.py\"], without NUL characters"
+            };
+            return Err(self.out_of_range("model.command", &arguments, expected));
+        }
+        let is_beside =
+            |argument: &&String| Path::new(argument.as_str()).is_relative() && folder.join(argument).is_file();
+        if let Some(argument) = arguments.get_ref().iter().find(is_beside).filter(|_| !shell) {
+            let (place, argument) = (self.place("model.command", &arguments), argument.clone());
+            return Err(StudyError::FileBesideStudy { place, argument });
+        }
+        let whole = |key, value: Option<Spanned<i64>>, range, default| {
+            value.map_or(Ok(default), |value| self.integer(key, value, range))
+        };
+        let timeout = match raw.timeout.take() {
+            None => None,
+            timeout => {
+                let expected = "a number of seconds above 0 and at most 1e9";
+                let holds = |value| value > 0.0 && value <= 1e9;
+                Some(self.number("model.timeout", timeout, 0.0, expected, holds)?)
+            }
+        };
+        let mode = raw
+            .mode
+            .as_ref()
+            .map(|word| self.word("model.mode", word, &[("each", Mode::Each), ("batch", Mode::Batch)]));
+        let keeps = [("failed", Keep::Failed), ("always", Keep::Always), ("never", Keep::Never)];
+        let keep = raw.keep.as_ref().map(|word| self.word("model.keep", word, &keeps));
+        let work = raw.work.take();
+        if let Some(work) = work.as_ref().filter(|work| work.get_ref().is_empty() || work.get_ref().contains('\0')) {
+            return Err(self.out_of_range("model.work", work, "the name of a folder"));
+        }
+        Ok(ModelSettings::Command(Command {
+            arguments: arguments.into_inner(),
+            shell,
+            mode: mode.transpose()?.unwrap_or(Mode::Each),
+            jobs: whole("model.jobs", raw.jobs.take(), 1..=MOST_JOBS, defaults::JOBS)? as usize,
+            timeout,
+            retries: whole("model.retries", raw.retries.take(), 0..=1000, 0)? as u32,
+            work_folder: work.map_or(defaults::WORK_FOLDER.to_owned(), Spanned::into_inner),
+            keep: keep.transpose()?.unwrap_or(Keep::Failed),
+            study_folder: folder.to_owned(),
+            answers: self.table(&mut raw, constants)?,
+        }))
+    }
+}
+
+pub(super) fn print(file: &mut Printer, settings: &Command) {
+    let arguments: Vec<String> = settings.arguments.iter().map(|argument| quoted(argument)).collect();
+    let meaning = if settings.shell { "a line for the shell" } else { "the program and its arguments; no shell" };
+    file.line("command", format!("[{}]", arguments.join(", ")), meaning);
+    file.line("shell", settings.shell, "whether command is a line for the shell");
+    table::print(file, &settings.answers);
+    let (mode, meaning) = match settings.mode {
+        Mode::Each => ("each", "a process for each run: params.json in, results.json out; or \"batch\""),
+        Mode::Batch => ("batch", "a process for many runs: points.csv in, results.csv out; or \"each\""),
+    };
+    file.line("mode", format!("{mode:?}"), meaning);
+    file.line("jobs", settings.jobs, "processes at once");
+    match settings.timeout {
+        Some(seconds) => file.line("timeout", float(seconds), "seconds after which a process is stopped"),
+        None => file.line("# timeout", "600.0", "seconds after which a process is stopped; no limit unless written"),
+    }
+    file.line("retries", settings.retries, "further attempts at a run that failed");
+    file.line("work", quoted(&settings.work_folder), "folder for the folders of runs");
+    let keep = match settings.keep {
+        Keep::Failed => "failed",
+        Keep::Always => "always",
+        Keep::Never => "never",
+    };
+    file.line("keep", format!("{keep:?}"), "which of them are kept: \"failed\", \"always\", \"never\"");
+}
+
+/// Not how and where it is run, but what.
+pub(super) fn identify(text: &mut String, command: &Command) {
+    let _ = writeln!(text, "command {:?} {}", command.arguments, command.shell);
+    table::identify(text, &command.answers);
+}
