@@ -1,7 +1,7 @@
 //! Verified bounds hold whatever the surrogate, and are narrow where it is good.
 
-use crate::support::{build, shipped_study};
-use pcc_compile::reference::{certify_with_model, compare_with_model};
+use crate::support::{build, built, model_sample, shipped_study};
+use pcc_compile::reference::certify_with_model;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use pcc_evaluate::probability::statistics::Proportion;
@@ -28,7 +28,7 @@ fn the_truth_lies_inside_the_bound_in_at_least_95_percent_of_repetitions() {
     let (mut inside, mut repetitions) = (0, 0);
     for runs in [30, 60, 120, 240] {
         let (study, surrogate) = poor(runs);
-        let misclassified = compare_with_model(&surrogate, &study, 20_000, 1, &Silent).unwrap().misclassified_percent();
+        let misclassified = model_sample(8).compare(&surrogate).unwrap().misclassified_percent();
         for seed in 1..=50 {
             let certificate = certify_with_model(&surrogate, &study, RUNS, seed, LEVEL, &Silent).unwrap();
             repetitions += 1;
@@ -44,7 +44,7 @@ fn the_truth_lies_inside_the_bound_in_at_least_95_percent_of_repetitions() {
 #[test]
 fn good_surrogates_are_certified_to_less_than_half_the_width_of_runs_alone() {
     let study = crate::support::invariants_study(3);
-    let certificate = certify_with_model(&build(&study), &study, RUNS, 7, LEVEL, &Silent).unwrap();
+    let certificate = certify_with_model(built("clutch-r3"), &study, RUNS, 7, LEVEL, &Silent).unwrap();
     let alone = Proportion { hits: RUNS / 5, samples: RUNS }.clopper_pearson(LEVEL);
     assert_eq!((certificate.falsely_stable, certificate.falsely_unstable), (0, 0));
     let width = certificate.upper - certificate.lower;

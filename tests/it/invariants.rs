@@ -1,12 +1,10 @@
 //! Surrogates by invariants: as exact as promised with a tenth of the runs, whatever the seed.
 
-use crate::support::{build, invariants_study, shipped_study, text};
-use pcc_compile::fitting::fit::FitMethod;
-use pcc_compile::fitting::fit::Smooth;
-use pcc_compile::reference::compare_with_model;
+use crate::support::reproduction::TABLE_2;
+use crate::support::{build, built, invariants_study, model_sample, shipped_study};
+use pcc_compile::fitting::fit::{FitMethod, Smooth};
 use pcc_compile::study::{Derivatives, Study};
 use pcc_evaluate::components::OutputKind;
-use pcc_evaluate::foundation::Silent;
 
 /// Inputs, most model runs, largest error of the proportion and share of misclassified points in percent.
 type Bar = (usize, u64, f64, f64);
@@ -16,32 +14,22 @@ const WITH_DERIVATIVES: [Bar; 5] =
 const VALUES_ALONE: [Bar; 5] =
     [(1, 40, 0.0, 0.0), (2, 40, 0.0, 0.0), (3, 60, 0.01, 0.002), (5, 120, 0.05, 0.05), (8, 240, 0.12, 0.1)];
 
-/// Points of the comparison; a single point weighs 0.002 % of them and up to 0.01 % of the proportion.
-const POINTS: u64 = 50_000;
-
-/// The documented example judges five seeds on 10⁵ points; here as many as a test can take.
-const SEEDS: [u64; 2] = [1, 2];
-
 #[test]
 fn every_row_with_derivatives_stays_within_its_bar() {
-    WITH_DERIVATIVES.iter().for_each(|bar| stays_within(*bar, ""));
+    WITH_DERIVATIVES.iter().for_each(|bar| stays_within(*bar, true));
 }
 
 #[test]
 fn every_row_of_values_alone_stays_within_its_bar() {
-    VALUES_ALONE.iter().for_each(|bar| stays_within(*bar, "[fit]\nderivatives = false\n"));
+    VALUES_ALONE.iter().for_each(|bar| stays_within(*bar, false));
 }
 
-fn stays_within((inputs, most_runs, largest_error, most_misclassified): Bar, more: &str) {
-    let mut study = Study::from_toml(&(text(&format!("surrogates/clutch-r{inputs}.toml")) + more)).unwrap();
-    for seed in SEEDS {
-        study.seed = seed;
-        let surrogate = build(&study);
-        let runs = surrogate.training.counts.direct_computations;
-        let comparison = compare_with_model(&surrogate, &study, POINTS, 1, &Silent).unwrap();
-        let (error, misclassified) = (comparison.relative_error_percent().unwrap(), comparison.misclassified_percent());
-        let row = format!("r = {inputs}, seed {seed}: {runs} runs, {error} %, {misclassified} % misclassified");
-        assert!(runs <= most_runs && error <= largest_error && misclassified <= most_misclassified, "{row}");
+fn stays_within((inputs, most_runs, largest_error, most_misclassified): Bar, derivatives: bool) {
+    for row in TABLE_2.sparse(inputs, "invariants", derivatives) {
+        let (runs, error, misclassified) = (row.direct_computations, row.error(), row.misclassified_percent);
+        let found = format!("r = {inputs}, seed {}: {runs} runs, {error} %, {misclassified} % misclassified", row.seed);
+        println!("{found}");
+        assert!(runs <= most_runs && error <= largest_error && misclassified <= most_misclassified, "{found}");
     }
 }
 
@@ -49,12 +37,12 @@ fn stays_within((inputs, most_runs, largest_error, most_misclassified): Bar, mor
 #[test]
 fn derivatives_are_recorded() {
     use pcc_evaluate::surrogate::{LeaveOut, SettingValue};
-    let with = build(&invariants_study(3));
+    let with = built("clutch-r3");
     let mut study = invariants_study(3);
     study.fit.derivatives = Derivatives::Never;
     (study.design.initial, study.design.step) = (30, 30);
     let without = build(&study);
-    for (surrogate, used, leaves_out) in [(&with, true, LeaveOut::Run), (&without, false, LeaveOut::Row)] {
+    for (surrogate, used, leaves_out) in [(with, true, LeaveOut::Run), (&without, false, LeaveOut::Row)] {
         let counts = surrogate.training.counts;
         assert_eq!(counts.gradients, if used { counts.values } else { 0 });
         assert_eq!((counts.values, counts.direct_computations), (counts.direct_computations, counts.values));
@@ -68,7 +56,7 @@ fn derivatives_are_recorded() {
 
 #[test]
 fn the_coalescing_pair_is_found_and_the_other_modes_stay_single() {
-    let surrogate = build(&invariants_study(2));
+    let surrogate = built("clutch-r2");
     let found: Vec<_> = surrogate.outputs.iter().map(|output| (output.kind, output.modes.clone())).collect();
     let eigenvalue = OutputKind::Eigenvalue;
     assert_eq!(found, [(eigenvalue, vec![1]), (eigenvalue, vec![2]), (OutputKind::Cluster, vec![3, 4])]);
@@ -92,7 +80,7 @@ fn methods_and_targets_combine_freely() {
         study.fit.proportion_tolerance = None;
         (study.design.initial, study.design.maximum) = (60, 60);
         let surrogate = build(&study);
-        compare_with_model(&surrogate, &study, 20_000, 1, &Silent).unwrap().misclassified_percent()
+        model_sample(3).compare(&surrogate).unwrap().misclassified_percent()
     };
     let smooth = || Smooth { max_degree: 15, s2_target: 0.999 };
     let papers = shipped_study(3).fit.method;
@@ -138,9 +126,8 @@ fn the_estimated_error_of_the_proportion_is_of_the_order_of_the_true_one() {
             (study.design.initial, study.design.step, study.design.maximum) = (level, level, 2 * level);
             let surrogate = build(&study);
             let estimate = surrogate.decision.proportion_error.unwrap();
-            let truth =
-                compare_with_model(&surrogate, &study, 40_000, 1, &Silent).unwrap().relative_error_percent().unwrap()
-                    / 100.0;
+            let comparison = model_sample(8).compare(&surrogate).unwrap();
+            let truth = comparison.relative_error_percent().unwrap() / 100.0;
             ratios.push(truth / estimate);
         }
     }

@@ -1,7 +1,7 @@
 //! Models by matrices of the user's: against the built-in clutch, against LAPACK, by their derivatives, and by what
 //! they refuse.
 
-use crate::support::{csv_rows, invariants_study, repository, text};
+use crate::support::{built, csv_rows, invariants_study, repository, text};
 use nalgebra::Complex;
 use pcc_compile::compilation::build;
 use pcc_compile::mechanics::model::Model;
@@ -113,11 +113,9 @@ fn derivatives_are_those_of_differences() {
 #[test]
 fn proportions_are_those_of_the_model() {
     for name in &SYSTEMS[..4] {
-        let study = study(name);
-        let surrogate = build(&study, &Silent).unwrap();
+        let surrogate = built(name);
         let runs = surrogate.training.counts.direct_computations;
-        let error =
-            compare_with_model(&surrogate, &study, 100_000, 1, &Silent).unwrap().relative_error_percent().unwrap();
+        let error = compare_with_model(surrogate, &study(name), 100_000, 1, &Silent).unwrap().relative_error_percent().unwrap();
         println!("{name}: {runs} runs, {error:.4} % off");
         assert!(runs <= 100 && error <= 0.1, "{name}: {runs} runs, {error} %");
     }

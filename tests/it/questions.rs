@@ -250,7 +250,8 @@ fn bad_parts_are_refused_by_name() {
 #[test]
 fn an_interruption_prints_what_was_counted() {
     let folder = workplace();
-    let interrupt = |arguments: &[&str]| {
+    // What it prints, and nothing if it had counted nothing yet.
+    let interrupt_after = |milliseconds: u64, arguments: &[&str]| {
         let child = std::process::Command::new(assert_cmd::cargo::cargo_bin("pcc"))
             .current_dir(folder.path())
             .args(arguments)
@@ -258,13 +259,18 @@ fn an_interruption_prints_what_was_counted() {
             .stderr(std::process::Stdio::piped())
             .spawn()
             .unwrap();
-        // Long enough for some chunks on a busy machine.
-        std::thread::sleep(std::time::Duration::from_millis(2500));
+        std::thread::sleep(std::time::Duration::from_millis(milliseconds));
         let sent = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
         assert!(sent.success(), "{arguments:?} had ended before");
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(130), "{arguments:?}");
         String::from_utf8(output.stdout).unwrap()
+    };
+    // A busy machine needs longer for the first samples than an idle one, which would count for nothing all that time.
+    let interrupt = |arguments: &[&str]| {
+        let waits = (0..5).map(|attempt| 400 << attempt);
+        let mut printed = waits.map(|milliseconds| interrupt_after(milliseconds, arguments));
+        printed.find(|text| !text.is_empty()).unwrap_or_else(|| panic!("{arguments:?} counted nothing"))
     };
     let text = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e13"]);
     assert!(text.contains("  incomplete             interrupted after "), "{text}");
@@ -287,7 +293,7 @@ fn an_interruption_prints_what_was_counted() {
     assert!((0.19..0.21).contains(&proportion));
     // Parts that are not complete are not written.
     let before = files(folder.path());
-    let said = interrupt(&["eval", "clutch-r8.pcc", "-n", "1e13", "--part", "x.part"]);
+    let said = interrupt_after(400, &["eval", "clutch-r8.pcc", "-n", "1e13", "--part", "x.part"]);
     assert_eq!((said.as_str(), files(folder.path())), ("", before));
     let sweep =
         interrupt(&["eval", "clutch-r3.pcc", "-n", "1e9", "--sweep", "mu=0:0.5:1000", "--table", "x.csv", "--json"]);

@@ -1,7 +1,6 @@
 //! What is shipped under `surrogates/` and `schemas/`.
 
-use crate::support::{build, repository, shipped_study, text};
-use pcc_compile::study::Study;
+use crate::support::{built, repository, text};
 use pcc_evaluate::artifact::{Artifact, Format, decode, encode, read, schema};
 use pcc_evaluate::surrogate::Surrogate;
 use std::fmt::Write;
@@ -20,9 +19,8 @@ fn shipped(name: &str, form: Format) -> Artifact {
 #[test]
 fn rebuilding_finds_what_is_shipped() {
     for name in names() {
-        let rebuilt =
-            build(&Study::from_toml_in(&text(&format!("surrogates/{name}.toml")), &repository("surrogates")).unwrap());
-        rebuilt.agrees_with(&shipped(&name, Format::Binary).surrogate).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let shipped = shipped(&name, Format::Binary).surrogate;
+        built(&name).agrees_with(&shipped).unwrap_or_else(|e| panic!("{name}: {e}"));
     }
 }
 
@@ -86,7 +84,7 @@ fn fitted_coefficients() {
     for inputs in [1, 2, 4, 8] {
         insta::assert_snapshot!(
             format!("coefficients_r{inputs}"),
-            portable_coefficients(&build(&shipped_study(inputs)))
+            portable_coefficients(built(&format!("clutch-r{inputs}-eigenvalues")))
         );
     }
 }
@@ -95,7 +93,7 @@ fn fitted_coefficients() {
 /// several equally good settings the search ends at.
 #[test]
 fn fitted_coefficients_of_invariants() {
-    let surrogate = build(&crate::support::invariants_study(2));
+    let surrogate = built("clutch-r2");
     let mut listing = String::new();
     for component in surrogate.components() {
         let expansion = &surrogate.expansions[component.id];

@@ -1,12 +1,15 @@
 //! What several tests share.
-#![allow(dead_code, reason = "every test file compiles its own copy and uses a part of it")]
 
 pub mod command;
+pub mod reproduction;
 
+use pcc_compile::reference::ModelSample;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use pcc_evaluate::surrogate::Surrogate;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::{Mutex, OnceLock};
 
 /// A file of the repository.
 pub fn repository(path: &str) -> PathBuf {
@@ -31,6 +34,30 @@ pub fn invariants_study(inputs: usize) -> Study {
 /// Builds a study.
 pub fn build(study: &Study) -> Surrogate {
     pcc_compile::compilation::build(study, &Silent).unwrap()
+}
+
+/// The surrogate of the shipped study of this name, built once for all tests.
+pub fn built(name: &str) -> &'static Surrogate {
+    static BUILT: Mutex<BTreeMap<String, &'static OnceLock<Surrogate>>> = Mutex::new(BTreeMap::new());
+    // The list is free again while the surrogate is built, for tests that want others.
+    let place = *BUILT.lock().unwrap().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::default()));
+    place.get_or_init(|| {
+        let study = Study::from_toml_in(&text(&format!("surrogates/{name}.toml")), &repository("surrogates"));
+        build(&study.unwrap())
+    })
+}
+
+/// Points of a shared sample.
+const SAMPLE_POINTS: u64 = 50_000;
+
+/// The model with so many inputs at the first points under seed 1: run once for all tests that judge surrogates on them, because
+/// that costs more than the builds and evaluations of most surrogates.
+pub fn model_sample(inputs: usize) -> &'static ModelSample<'static> {
+    static SAMPLES: [OnceLock<ModelSample<'static>>; 8] = [const { OnceLock::new() }; 8];
+    SAMPLES[inputs - 1].get_or_init(|| {
+        let study: &'static Study = Box::leak(Box::new(shipped_study(inputs)));
+        ModelSample::new(study, SAMPLE_POINTS, 1, &Silent).unwrap()
+    })
 }
 
 /// Rows of a CSV file of numbers, below its header.
