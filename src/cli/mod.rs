@@ -1,5 +1,7 @@
 //! The command line: arguments in, reports out, exit codes as promised.
 
+#![allow(rustdoc::invalid_html_tags, reason = "comments on options are their help texts")]
+
 mod answers;
 mod arguments;
 mod commands;

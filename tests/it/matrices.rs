@@ -115,7 +115,8 @@ fn proportions_are_those_of_the_model() {
     for name in &SYSTEMS[..4] {
         let surrogate = built(name);
         let runs = surrogate.training.counts.direct_computations;
-        let error = compare_with_model(surrogate, &study(name), 100_000, 1, &Silent).unwrap().relative_error_percent().unwrap();
+        let error =
+            compare_with_model(surrogate, &study(name), 100_000, 1, &Silent).unwrap().relative_error_percent().unwrap();
         println!("{name}: {runs} runs, {error:.4} % off");
         assert!(runs <= 100 && error <= 0.1, "{name}: {runs} runs, {error} %");
     }

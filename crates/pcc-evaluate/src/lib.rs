@@ -21,7 +21,7 @@
 //!
 //! let surrogate = artifact::read("clutch.pcc".as_ref())?.surrogate;
 //! let stable = monte_carlo(&surrogate, 100_000, 1, &Silent)?.stable_proportion();
-//! println!("stable: {} of {}", stable.count(), stable.total());
+//! println!("stable: {} of {}", stable.hits, stable.samples);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -36,7 +36,6 @@ pub static TABLE_2: LazyLock<Reproduction> = LazyLock::new(|| {
 pub struct Row {
     pub r: usize,
     pub method: String,
-    pub order: u16,
     pub direct_computations: u64,
     pub stability_error_percent: Option<f64>,
     pub target: String,

@@ -81,7 +81,7 @@ impl Lines<'_> {
             name: TOLERANCE,
             domain: Domain::Number {
                 expected: "a number from 1e-5 to 1",
-                holds: |value| value >= 1e-5 && value <= 1.0,
+                holds: |value| (1e-5..=1.0).contains(&value),
             },
         };
         if !entry.grows {

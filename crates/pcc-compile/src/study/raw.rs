@@ -141,7 +141,32 @@ pub(super) struct Design {
     pub maximum: Option<Spanned<i64>>,
 }
 
-/// A value of `[fit]`, whose keys are those of the methods.
+/// The keys of `[fit]` that go with every method, read once more for their types alone: then the parser's excerpt says
+/// where a value is none.
+#[derive(Debug, Deserialize)]
+struct OfEveryMethod {
+    #[serde(rename = "fit")]
+    _fit: Option<EveryMethod>,
+}
+
+#[derive(Debug, Deserialize)]
+struct EveryMethod {
+    #[serde(rename = "method")]
+    _method: Option<String>,
+    #[serde(rename = "proportion_tolerance")]
+    _proportion_tolerance: Option<f64>,
+    #[serde(rename = "derivatives")]
+    _derivatives: Option<Derivatives>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged, expecting = "derivatives must be \"auto\", true or false")]
+enum Derivatives {
+    Flag(#[expect(dead_code, reason = "only its type is read")] bool),
+    Word(#[expect(dead_code, reason = "only its type is read")] String),
+}
+
+/// A value of `[fit]`, whose other keys are those of the methods.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(untagged, expecting = "expected a number, a text in quotes, true or false")]
 pub(super) enum FitValue {
@@ -205,7 +230,9 @@ pub(super) fn format(text: &str) -> Result<Versioned, StudyError> {
 }
 
 pub(super) fn parse(text: &str) -> Result<Study, StudyError> {
-    toml::from_str(text).map_err(syntax)
+    let study = toml::from_str(text).map_err(syntax)?;
+    toml::from_str::<OfEveryMethod>(text).map_err(syntax)?;
+    Ok(study)
 }
 
 /// The parser's message with its excerpt of the file, in words of the file instead of words of the program.

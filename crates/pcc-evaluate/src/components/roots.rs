@@ -67,7 +67,7 @@ const ZERO: Complex<f64> = Complex { re: 0.0, im: 0.0 };
 /// // (z − 1)(z − 2)(z + 3) = z³ − 7z + 6
 /// let coefficients = [0.0, -7.0, 6.0].map(|c| Complex::new(c, 0.0));
 /// let mut roots = [Complex::new(0.0, 0.0); 3];
-/// pcc_evaluate::components::roots::roots(&coefficients, &mut roots);
+/// pcc_evaluate::components::roots(&coefficients, &mut roots);
 /// roots.sort_by(|a, b| a.re.total_cmp(&b.re));
 /// for (root, expected) in roots.iter().zip([-3.0, 1.0, 2.0]) {
 ///     assert!((root - expected).norm() < 1e-14);

@@ -22,7 +22,7 @@ pub struct HistogramRequest {
 /// use pcc_evaluate::session::{Request, Session};
 /// use pcc_evaluate::{artifact, evaluation::Condition};
 /// let surrogate = artifact::decode(include_bytes!("../../../../surrogates/clutch-r2.pcc"))?.surrogate;
-/// let little_friction = Condition { input: "mu".to_owned(), lower: 0.0, upper: 0.1 };
+/// let little_friction = Condition { input: "mu".to_owned(), lower: 0.0, upper: 0.05 };
 /// let request = Request { conditions: vec![little_friction], ..Request::plain(10_000, 1) };
 /// let question = request.question(&surrogate)?;
 /// let session = Session::new(&surrogate, &question, request.critical.as_deref(), InstructionSet::best())?;

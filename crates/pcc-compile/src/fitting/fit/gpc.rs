@@ -2,8 +2,8 @@
 //!
 //! All multi-indices with |α| ≤ p, (r + p)!/(r! p!) of them (equation 6), none chosen. The coefficients come from
 //!
-//! * **projection** ([`project`]): c_α = E\[y ψ_α\], the integral by a tensor Gauss rule with p + 1 nodes per input: (p
-//!   + 1)ʳ model runs. On the nodes the ψ_α are orthonormal under the weights w_i of the rule, so projection is
+//! * **projection** ([`project`]): c_α = E\[y ψ_α\], the integral by a tensor Gauss rule with p + 1 nodes per input:
+//!   (p + 1)ʳ model runs. On the nodes the ψ_α are orthonormal under the weights w_i of the rule, so projection is
 //!   weighted least squares there. Its leave-one-out error would follow as for any regression, but says nothing: for
 //!   every node there are others with the same coordinate, so what the degree misses between them is never seen (the
 //!   clutch with p = 6, r = 3: S² = 1 − 5·10⁻⁷ where the proportion is 7 % off);
@@ -32,7 +32,7 @@ const BLOCKS_IN_FLIGHT: usize = 16;
 const SOLVER: Key = Key { name: "solver", domain: Domain::Word(&["quadrature", "least-squares"]) };
 const OVERSAMPLING: Key = Key {
     name: "oversampling",
-    domain: Domain::Number { expected: "a number from 1 to 100", holds: |value| value >= 1.0 && value <= 100.0 },
+    domain: Domain::Number { expected: "a number from 1 to 100", holds: |value| (1.0..=100.0).contains(&value) },
 };
 
 /// Points per term of a full expansion by least squares, as the paper asks of a design: N ≥ 2 card(A).

@@ -36,7 +36,7 @@ const Q_NORM: Key = Key::share("q_norm");
 const EPSILON_FORWARD: Key = Key { name: "epsilon_forward", domain: EPSILON };
 const EPSILON_BACKWARD: Key = Key { name: "epsilon_backward", domain: EPSILON };
 const EPSILON: Domain =
-    Domain::Number { expected: "a number from 0 to below 1", holds: |value| value >= 0.0 && value < 1.0 };
+    Domain::Number { expected: "a number from 0 to below 1", holds: |value| (0.0..1.0).contains(&value) };
 
 /// Chosen so that table 2 of the paper is reproduced for all numbers of inputs.
 const DEFAULT_Q: f64 = 0.6;

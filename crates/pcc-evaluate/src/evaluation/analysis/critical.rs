@@ -22,7 +22,7 @@ use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::Evaluator;
-use crate::evaluation::survey::region::Region;
+use crate::evaluation::questions::region::Region;
 use crate::foundation::Observer;
 use crate::probability::inputs::{Marginal, Uniform};
 use crate::probability::random::{Purpose, Stream};

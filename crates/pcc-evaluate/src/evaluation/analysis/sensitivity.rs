@@ -31,7 +31,7 @@ use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::{Evaluator, evaluate_points};
-use crate::evaluation::survey::region::Region;
+use crate::evaluation::questions::region::Region;
 use crate::foundation::Observer;
 use crate::probability::inputs::InputSpace;
 use crate::probability::random::{Purpose, Stream};

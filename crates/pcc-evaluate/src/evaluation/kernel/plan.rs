@@ -5,7 +5,7 @@
 //! [`crate::evaluation::BLOCK_POINTS`] points at a time, one per lane, with the vector instructions of the processor;
 //! eigenvalues and max Re λ follow in the same lanes.
 
-use super::kernel;
+use super::inner_loops;
 use super::lanes::Lanes;
 use super::operations::Operations;
 use super::recombination::recombine;
@@ -160,7 +160,7 @@ impl WithSimd for Evaluating<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Workspace { points, table, results } = self.workspace;
-        kernel::evaluate(simd, self.program, points, table, &mut results.components);
+        inner_loops::evaluate(simd, self.program, points, table, &mut results.components);
     }
 }
 

@@ -37,8 +37,8 @@ pub struct ResultRow {
 }
 
 impl ResultRow {
-    /// The answer to run number `run` of a design, at `point` in physical units: eigenvalues in 1/s. It has no table, and
-    /// line 0.
+    /// The answer to run number `run` of a design, at `point` in physical units: eigenvalues in 1/s. It comes from no
+    /// table, so its line is 0.
     pub fn answer(run: u64, point: &[f64], eigenvalues: Vec<Complex<f64>>) -> Self {
         Self { line: 0, run: Some(run), inputs: Some(point.to_vec()), answer: Ok(eigenvalues) }
     }
