@@ -159,8 +159,9 @@ fn reflection(size: usize, number: usize) -> DMatrix<f64> {
     DMatrix::identity(size, size) - &v * v.transpose() * (2.0 / v.norm_squared())
 }
 
-/// Eigenvalues of the 1 × 1 and 2 × 2 diagonal blocks of a real Schur form. A block's eigenvalues are (a + d)/2 ± √(bc
-/// + ((a − d)/2)²): a conjugate pair, or two real ones where rounding left a block with real eigenvalues.
+/// Eigenvalues of the 1 × 1 and 2 × 2 diagonal blocks of a real Schur form. A block's eigenvalues are
+/// (a + d)/2 ± √(bc + ((a − d)/2)²): a conjugate pair, or two real ones where rounding left a block with real
+/// eigenvalues.
 fn of_quasi_triangular(triangular: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let size = triangular.nrows();
     let mut found = Vec::with_capacity(size);
