@@ -5,25 +5,12 @@ use pcc_evaluate::surrogate::{Certificate, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
-/// A certificate.
+/// A certificate of a surrogate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CertificateReport {
-    /// Seed of its points.
-    pub seed: u64,
-    /// Number of fresh model runs.
-    pub samples: u64,
-    /// How the points were drawn.
-    pub scheme: String,
-    /// Points that the surrogate calls stable and the model unstable.
-    pub falsely_stable: u64,
-    /// Points that the surrogate calls unstable and the model stable.
-    pub falsely_unstable: u64,
-    /// Confidence level.
-    pub level: f64,
-    /// Lower end of the bound on the stability proportion.
-    pub lower: f64,
-    /// Upper end.
-    pub upper: f64,
+    /// What it says.
+    #[serde(flatten)]
+    pub certificate: Certificate,
     /// Whether the model that was run is the one the surrogate was built for.
     pub same_problem: bool,
 }
@@ -32,14 +19,7 @@ impl CertificateReport {
     /// All certificates of a surrogate, oldest first.
     pub fn of(surrogate: &Surrogate) -> Vec<Self> {
         let report = |certificate: &Certificate| Self {
-            seed: certificate.seed,
-            samples: certificate.samples,
-            scheme: certificate.scheme.clone(),
-            falsely_stable: certificate.falsely_stable,
-            falsely_unstable: certificate.falsely_unstable,
-            level: certificate.level,
-            lower: certificate.lower,
-            upper: certificate.upper,
+            certificate: certificate.clone(),
             same_problem: certificate.problem_hash == surrogate.provenance.problem_hash,
         };
         surrogate.certificates.iter().map(report).collect()
@@ -49,16 +29,14 @@ impl CertificateReport {
 impl fmt::Display for CertificateReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let other = if self.same_problem { "" } else { "; of another problem than the surrogate's" };
+        let Certificate { seed, samples, falsely_stable, falsely_unstable, level, lower, upper, .. } = self.certificate;
         write!(
             f,
-            "{:.3} to {:.3} % stable at level {}, {} model runs, seed {}, {} falsely stable, {} falsely unstable{other}",
-            100.0 * self.lower,
-            100.0 * self.upper,
-            self.level,
-            count(self.samples),
-            self.seed,
-            self.falsely_stable,
-            self.falsely_unstable
+            "{:.3} to {:.3} % stable at level {level}, {} model runs, seed {seed}, {falsely_stable} falsely stable, \
+             {falsely_unstable} falsely unstable{other}",
+            100.0 * lower,
+            100.0 * upper,
+            count(samples),
         )
     }
 }
@@ -86,11 +64,14 @@ impl CertifyReport {
 
 impl fmt::Display for CertifyReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some((new, earlier)) = self.certificates.split_last() else { return Ok(()) };
+        let Some((CertificateReport { certificate: new, same_problem }, earlier)) = self.certificates.split_last()
+        else {
+            return Ok(());
+        };
         writeln!(f, "{}: {} fresh model runs, {:.2} s\n", self.study, count(new.samples), self.elapsed_seconds)?;
         writeln!(f, "  verified bound         {:.3} % to {:.3} % stable", 100.0 * new.lower, 100.0 * new.upper)?;
         writeln!(f, "  level                  {}, whatever the surrogate", new.level)?;
-        if !new.same_problem {
+        if !same_problem {
             writeln!(f, "  of another problem     than the surrogate was built for: eval does not show this bound")?;
         }
         writeln!(

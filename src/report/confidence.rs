@@ -1,5 +1,6 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
+use super::survey::LEVEL;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Proportion};
 use pcc_evaluate::surrogate::{Certificate, Decision, Surrogate};
@@ -11,25 +12,29 @@ use std::fmt;
 pub struct Confidence {
     /// Wilson interval of the share: what the finite number of samples leaves open.
     pub interval: Interval,
-    /// Number of these samples.
-    #[serde(skip)]
-    pub samples: u64,
-    /// Independent randomisations that the interval is made from; 1 if it is from the number of samples.
-    #[serde(skip)]
-    pub replicates: u64,
-    /// Whether the samples are from a part of the domain alone.
-    #[serde(skip)]
-    pub is_confined: bool,
     /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves
     /// open; null if unknown.
     pub surrogate_band: Option<Interval>,
     /// Estimated relative error of the proportion; null if unknown.
     pub estimated_error_percent: Option<f64>,
-    /// Whether that is the part of modes left out alone, because there was one design level.
-    #[serde(skip)]
-    pub of_modes_left_out: bool,
     /// The certificate with the most model runs, the first of equals; null if there is none.
     pub verified_bound: Option<VerifiedBound>,
+    /// What the text says besides.
+    #[serde(skip)]
+    pub basis: Basis,
+}
+
+/// What the answers rest on: said in words, not in JSON, which has the numbers elsewhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Basis {
+    /// Number of samples.
+    pub samples: u64,
+    /// Independent randomisations that the interval is made from; 1 if it is from the number of samples.
+    pub replicates: u64,
+    /// Whether the samples are from a part of the domain alone.
+    pub is_confined: bool,
+    /// Whether the estimated error is the part of modes left out alone, because there was one design level.
+    pub of_modes_left_out: bool,
 }
 
 /// A bound from fresh model runs.
@@ -55,21 +60,32 @@ impl Confidence {
         let band = Interval { lower: share(if_shifted[1]), upper: share(if_shifted[0]), level: Decision::BAND_LEVEL };
         Self {
             interval,
-            samples: stable.samples,
-            replicates: 1,
-            is_confined: false,
             surrogate_band: (!decision.max_re_residuals.is_empty()).then_some(band),
             estimated_error_percent: decision.proportion_error.map(|error| 100.0 * error),
-            of_modes_left_out: is_of_modes_left_out(surrogate),
             verified_bound: verified_bound(surrogate),
+            basis: Basis {
+                samples: stable.samples,
+                replicates: 1,
+                is_confined: false,
+                of_modes_left_out: is_of_modes_left_out(surrogate),
+            },
         }
     }
-}
 
-impl Confidence {
+    /// Of direct computations, which leave open what their number does.
+    pub(super) fn of_model(stable: Proportion) -> Self {
+        Self {
+            interval: stable.wilson(LEVEL),
+            surrogate_band: None,
+            estimated_error_percent: None,
+            verified_bound: None,
+            basis: Basis { samples: stable.samples, replicates: 1, is_confined: false, of_modes_left_out: false },
+        }
+    }
+
     /// Takes back what is known of the whole domain only.
     pub(super) fn confine(&mut self) {
-        self.is_confined = true;
+        self.basis.is_confined = true;
         self.estimated_error_percent = None;
         self.verified_bound = None;
     }
@@ -109,24 +125,24 @@ impl Confidence {
         let range = |interval: &Interval| format!("{} to {}", percent(interval.lower), percent(interval.upper));
         let level = |interval: &Interval| format!("{:.0} %", 100.0 * interval.level);
         let Self { interval, surrogate_band, verified_bound, .. } = self;
-        let sampling = match self.replicates {
-            0 | 1 => format!("{}   {}, from {} samples", range(interval), level(interval), count(self.samples)),
+        let sampling = match self.basis.replicates {
+            0 | 1 => format!("{}   {}, from {} samples", range(interval), level(interval), count(self.basis.samples)),
             replicates => format!("{}   {}, from {replicates} replicates", range(interval), level(interval)),
         };
         let band = match (surrogate_band, self.estimated_error_percent) {
             (None, None) => "unknown: no point could be left out".to_owned(),
             (None, Some(error)) => {
-                format!("unknown: no point could be left out; {}", error_text(error, self.of_modes_left_out))
+                format!("unknown: no point could be left out; {}", error_text(error, self.basis.of_modes_left_out))
             }
             (Some(band), error) => {
-                let error =
-                    error.map_or(String::new(), |error| format!("; {}", error_text(error, self.of_modes_left_out)));
-                let place = if self.is_confined { " in all of the domain" } else { "" };
+                let error = error
+                    .map_or(String::new(), |error| format!("; {}", error_text(error, self.basis.of_modes_left_out)));
+                let place = if self.basis.is_confined { " in all of the domain" } else { "" };
                 format!("{}   {} of points left out{place}{error}", range(band), level(band))
             }
         };
         let verified = match verified_bound {
-            None if self.is_confined => "none for a part of the domain".to_owned(),
+            None if self.basis.is_confined => "none for a part of the domain".to_owned(),
             None => "none; `pcc certify` makes one from fresh model runs".to_owned(),
             Some(VerifiedBound { bound, samples, seed, certificates }) => {
                 let others =

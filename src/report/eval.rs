@@ -26,21 +26,12 @@ pub struct EvalReport {
     pub requested_samples: u64,
     /// Whether these are all samples, and all else that was asked for; false after an interruption.
     pub complete: bool,
-    /// Whether it is something else than samples that is missing.
-    #[serde(skip)]
-    pub has_all_samples: bool,
-    /// How many parts were put together.
-    #[serde(skip)]
-    pub merged_parts: Option<usize>,
     /// Seed of the samples.
     pub seed: u64,
     /// How samples are drawn.
     pub sampler: &'static str,
     /// Independent randomisations that the samples are divided among; those that are complete.
     pub replicates: u32,
-    /// Randomisations that were asked for.
-    #[serde(skip)]
-    pub requested_replicates: u32,
     /// Inputs that are confined or fixed.
     pub conditions: Vec<Condition>,
     /// Number of stable samples, max Re λ < 0.
@@ -74,6 +65,20 @@ pub struct EvalReport {
     pub max_re_residuals: Vec<QuantileReport>,
     /// Wall-clock time.
     pub elapsed_seconds: f64,
+    /// What the text says besides.
+    #[serde(skip)]
+    pub only_in_text: OnlyInText,
+}
+
+/// What the text of an evaluation says, and its JSON does not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OnlyInText {
+    /// Whether all samples are there, so that it is something else that is missing.
+    pub has_all_samples: bool,
+    /// How many parts were put together.
+    pub merged_parts: Option<usize>,
+    /// Randomisations that were asked for.
+    pub requested_replicates: u32,
 }
 
 /// Moments and range.
@@ -163,16 +168,18 @@ impl EvalReport {
         }
         let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
         report.complete = found.is_complete;
-        report.has_all_samples = answer.is_complete;
         report.sampler = question.sampler.name();
         report.requested_samples = question.samples;
         report.replicates = cell.replicates.len().max(1) as u32;
-        report.requested_replicates = question.replicates;
-        report.merged_parts = found.merged_parts;
+        report.only_in_text = OnlyInText {
+            has_all_samples: answer.is_complete,
+            merged_parts: found.merged_parts,
+            requested_replicates: question.replicates,
+        };
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
         report.confidence = Confidence::new(surrogate, stable, summary.stable_if_shifted, share.interval);
-        report.confidence.replicates = cell.replicates.len().max(1) as u64;
+        report.confidence.basis.replicates = cell.replicates.len().max(1) as u64;
         if !is_whole {
             report.confidence.confine();
         }
@@ -216,26 +223,14 @@ impl EvalReport {
             samples: stable.samples,
             requested_samples: stable.samples,
             complete: true,
-            has_all_samples: true,
-            merged_parts: None,
             seed,
             sampler: Sampler::MonteCarlo.name(),
             replicates: 1,
-            requested_replicates: 1,
             conditions: Vec::new(),
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
             standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
-            confidence: Confidence {
-                interval: stable.wilson(LEVEL),
-                samples: stable.samples,
-                replicates: 1,
-                is_confined: false,
-                surrogate_band: None,
-                estimated_error_percent: None,
-                of_modes_left_out: false,
-                verified_bound: None,
-            },
+            confidence: Confidence::of_model(stable),
             max_re: Statistics::of(&summary.max_re, 1.0),
             modes: ranks.zip(&summary.modes).map(|(mode, part)| mode_report(mode, part, stable.samples)).collect(),
             components: names
@@ -255,6 +250,7 @@ impl EvalReport {
             warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
+            only_in_text: OnlyInText { has_all_samples: true, merged_parts: None, requested_replicates: 1 },
         }
     }
 }

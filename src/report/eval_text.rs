@@ -33,7 +33,7 @@ impl Statistics {
 
 impl fmt::Display for EvalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let how = pace(self.samples as f64, self.elapsed_seconds, self.merged_parts);
+        let how = pace(self.samples as f64, self.elapsed_seconds, self.only_in_text.merged_parts);
         let (study, samples) = (&self.study, count(self.samples));
         writeln!(f, "{study}: {samples} samples of the {} {how}, seed {}\n", self.source, self.seed)?;
         self.write_circumstances(f)?;
@@ -56,7 +56,7 @@ impl fmt::Display for EvalReport {
         writeln!(f, "  largest max Re λ       {} 1/s", significant(self.max_re.maximum, 5))?;
         if let Some((low, high)) = self.central_residuals() {
             let [low, high] = [low, high].map(|value| significant(value, 3));
-            let place = if self.confidence.is_confined { " in all of the domain" } else { "" };
+            let place = if self.confidence.basis.is_confined { " in all of the domain" } else { "" };
             writeln!(
                 f,
                 "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out{place}"
@@ -90,14 +90,14 @@ impl EvalReport {
     fn write_circumstances(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.complete {
             let (done, asked) = (count(self.samples), count(self.requested_samples));
-            let place = match self.has_all_samples {
+            let place = match self.only_in_text.has_all_samples {
                 true => "all samples are counted; critical values or Sobol' indices are left out".to_owned(),
                 false => format!("interrupted after {done} of {asked} samples; what takes all of them is left out"),
             };
             writeln!(f, "  incomplete             {place}")?;
         }
         if self.sampler != Sampler::MonteCarlo.name() {
-            let asked = self.requested_replicates;
+            let asked = self.only_in_text.requested_replicates;
             let points = count(self.requested_samples / u64::from(asked.max(1)));
             let done = match self.replicates {
                 done if done == asked => format!("{asked} replicates of {points} points"),

@@ -88,11 +88,11 @@ pub struct Runner<'a> {
     modes: Vec<usize>,
 }
 
-/// What is kept of a run until all are there.
-type Answer = (Spectrum, Option<ReducedSystem>);
+/// What is kept of a run until all are there: its spectrum, and the system on the study's modes.
+type RunSpectrum = (Spectrum, Option<ReducedSystem>);
 
-/// How a run ended: with an answer, or with a failure that is left out, and its cause.
-type Ending = Result<Answer, String>;
+/// A run that counts: it answered, or it failed and is skipped, for this cause.
+type Settled = Result<RunSpectrum, String>;
 
 impl<'a> Runner<'a> {
     /// Sets up the model.
@@ -133,7 +133,7 @@ impl<'a> Runner<'a> {
     ///
     /// [`RunError`] names the first point that failed.
     pub fn run(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Run>, RunError> {
-        let runs = self.run_with(points, false, observer)?;
+        let runs = self.run_or_recall(points, false, observer)?;
         // Nothing was skipped.
         Ok(runs.into_iter().flatten().collect())
     }
@@ -143,11 +143,12 @@ impl<'a> Runner<'a> {
     /// # Errors
     ///
     /// As [`Runner::run`].
-    pub fn run_some(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Option<Run>>, RunError> {
-        self.run_with(points, self.study.model.skips_failures(), observer)
+    pub fn run_skipping(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Option<Run>>, RunError> {
+        self.run_or_recall(points, self.study.model.skips_failures(), observer)
     }
 
-    fn run_with(
+    /// Runs the model, or recalls what the ledger knows of it.
+    fn run_or_recall(
         &mut self,
         points: &[Vec<f64>],
         skips: bool,
@@ -160,27 +161,27 @@ impl<'a> Runner<'a> {
                 self.check_mode_count(point, spectrum.count())?;
             }
         }
-        let answers = self.complete(points, known, skips, observer)?;
+        let answers = self.fill_in(points, known, skips, observer)?;
         // Every point first: where the number of modes changes, a missing mode is the lesser news.
         for (point, answer) in points.iter().zip(&answers) {
             if let Some((spectrum, _)) = answer {
                 self.check_mode_count(point, spectrum.count())?;
             }
         }
-        let select = |(point, answer): (&Vec<f64>, Option<Answer>)| {
+        let select = |(point, answer): (&Vec<f64>, Option<RunSpectrum>)| {
             answer.map(|(spectrum, reduced)| self.select(point, spectrum, reduced)).transpose()
         };
         points.iter().zip(answers).map(select).collect()
     }
 
     /// The answers that are known, and those of the model at the other points.
-    fn complete(
+    fn fill_in(
         &self,
         points: &[Vec<f64>],
-        known: Vec<Option<Ending>>,
+        known: Vec<Option<Settled>>,
         skips: bool,
         observer: &dyn Observer,
-    ) -> Result<Vec<Option<Answer>>, RunError> {
+    ) -> Result<Vec<Option<RunSpectrum>>, RunError> {
         let missing: Vec<usize> = (0..points.len()).filter(|&i| known[i].is_none()).collect();
         if let Some(ledger) = self.ledger {
             ledger.note(points, |i| known[i].is_some());
@@ -190,28 +191,28 @@ impl<'a> Runner<'a> {
         }
         observer.advance((points.len() - missing.len()) as u64);
         let missing_points: Vec<&Vec<f64>> = missing.iter().map(|&i| &points[i]).collect();
-        let found = self.run_model(&missing_points, skips, observer);
+        let found = self.run_missing(&missing_points, skips, observer);
         if let Some(ledger) = self.ledger {
             // Runs that ended before another failed count as well.
             ledger.sync()?;
         }
         let mut found = found?.into_iter();
-        let endings = known.into_iter().zip(points).filter_map(|(known, point)| {
-            let ending = known.or_else(|| found.next())?;
-            if let (Some(ledger), Err(cause)) = (self.ledger, &ending) {
+        let settled = known.into_iter().zip(points).filter_map(|(known, point)| {
+            let one = known.or_else(|| found.next())?;
+            if let (Some(ledger), Err(cause)) = (self.ledger, &one) {
                 ledger.note_failure(point, cause.clone());
             }
-            Some(ending.ok())
+            Some(one.ok())
         });
-        Ok(endings.collect())
+        Ok(settled.collect())
     }
 
     /// What the ledger knows of a point, if that is enough: an answer, or a failure that may be left out.
-    fn known(&self, point: &[f64], skips: bool) -> Result<Option<Ending>, RunError> {
+    fn known(&self, point: &[f64], skips: bool) -> Result<Option<Settled>, RunError> {
         let Some(ledger) = self.ledger else { return Ok(None) };
         match ledger.find(point) {
             Some(RunOutcome::Answered(computation)) if self.suffices(computation) => {
-                self.answer(point, computation.clone()).map(|answer| Some(Ok(answer)))
+                self.see(point, computation.clone()).map(|answer| Some(Ok(answer)))
             }
             Some(RunOutcome::Failed { cause, by_circumstances, .. }) if skips && ledger.may_skip(*by_circumstances) => {
                 Ok(Some(Err(cause.clone())))
@@ -231,7 +232,13 @@ impl<'a> Runner<'a> {
         !self.with_derivatives || modes().as_ref().is_none_or(has_them)
     }
 
-    fn run_model(&self, points: &[&Vec<f64>], skips: bool, observer: &dyn Observer) -> Result<Vec<Ending>, RunError> {
+    /// The model at points that the ledger does not know.
+    fn run_missing(
+        &self,
+        points: &[&Vec<f64>],
+        skips: bool,
+        observer: &dyn Observer,
+    ) -> Result<Vec<Settled>, RunError> {
         let watch = || {
             if observer.interrupted() {
                 self.model.interrupt();
@@ -241,44 +248,45 @@ impl<'a> Runner<'a> {
             observer.check()?;
             let start = Instant::now();
             let result = self.direct_computation(point);
-            self.settle(point, result, start.elapsed(), records_at_once, skips, observer)
+            self.record(point, result, start.elapsed(), records_at_once, skips, observer)
         };
         match self.model.concurrency() {
             Concurrency::Threads => try_map(points.len(), |k| run(points[k], false)),
             Concurrency::Jobs(jobs) => try_map_waiting(jobs, points.len(), watch, |k| run(points[k], true)),
             Concurrency::Together if points.is_empty() => Ok(Vec::new()),
             Concurrency::Together => {
-                let all = |_| self.run_together(points, skips, observer);
+                let all = |_| self.run_in_one_call(points, skips, observer);
                 try_map_waiting(1, 1, watch, all).map(|answers| answers.into_iter().flatten().collect())
             }
         }
     }
 
-    fn run_together(
+    /// The same for models that take all points together.
+    fn run_in_one_call(
         &self,
         points: &[&Vec<f64>],
         skips: bool,
         observer: &dyn Observer,
-    ) -> Result<Vec<Ending>, RunError> {
+    ) -> Result<Vec<Settled>, RunError> {
         observer.check()?;
         let start = Instant::now();
-        let owned: Vec<Vec<f64>> = points.iter().map(|&point| point.clone()).collect();
-        let results = self.model.eigenvalues_together(&owned);
+        let points: Vec<&[f64]> = points.iter().map(|point| point.as_slice()).collect();
+        let results = self.model.eigenvalues_together(&points);
         let each = start.elapsed().div_f64(points.len() as f64);
         // All are recorded before the first failure ends the build.
         let settled: Vec<_> = results
             .into_iter()
-            .zip(points)
+            .zip(&points)
             .map(|(result, point)| {
                 let computation = result.map(|eigenvalues| Computation { eigenvalues, reduction: None });
-                self.settle(point, computation, each, false, skips, observer)
+                self.record(point, computation, each, false, skips, observer)
             })
             .collect();
         settled.into_iter().collect()
     }
 
     /// Records how a run ended.
-    fn settle(
+    fn record(
         &self,
         point: &[f64],
         result: Result<Computation, ModelError>,
@@ -286,7 +294,7 @@ impl<'a> Runner<'a> {
         at_once: bool,
         skips: bool,
         observer: &dyn Observer,
-    ) -> Result<Ending, RunError> {
+    ) -> Result<Settled, RunError> {
         let outcome = || match &result {
             Ok(computation) => RunOutcome::Answered(computation.clone()),
             Err(cause) => RunOutcome::Failed {
@@ -305,13 +313,14 @@ impl<'a> Runner<'a> {
         }
         observer.advance(1);
         match result {
-            Ok(computation) => self.answer(point, computation).map(Ok),
+            Ok(computation) => self.see(point, computation).map(Ok),
             Err(cause) if skips && has_run => Ok(Err(cause.to_string())),
             Err(cause) => Err(RunError::Model { point: self.study.inputs.describe(point), cause }),
         }
     }
 
-    fn answer(&self, point: &[f64], computation: Computation) -> Result<Answer, RunError> {
+    /// The answer as the study sees it.
+    fn see(&self, point: &[f64], computation: Computation) -> Result<RunSpectrum, RunError> {
         let Computation { eigenvalues, reduction } = computation;
         let spectrum = Spectrum::new(&eigenvalues)
             .map_err(|cause| RunError::Spectrum { point: self.study.inputs.describe(point), cause })?;
@@ -360,9 +369,9 @@ impl<'a> Runner<'a> {
 
     /// What the study asks of a spectrum.
     fn select(&mut self, point: &[f64], spectrum: Spectrum, reduced: Option<ReducedSystem>) -> Result<Run, RunError> {
-        let Study { inputs, spectrum: asked, .. } = self.study;
+        let Study { inputs, spectrum: settings, .. } = self.study;
         let unusable = |cause| RunError::Spectrum { point: inputs.describe(point), cause };
-        self.modes = asked.modes.ranks(spectrum.count()).map_err(unusable)?;
+        self.modes = settings.modes.ranks(spectrum.count()).map_err(unusable)?;
         let eigenvalues = self.modes.iter().map(|&mode| spectrum.mode(mode)).collect::<Result<_, _>>();
         Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum, reduced })
     }

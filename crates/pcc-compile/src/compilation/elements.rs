@@ -13,7 +13,7 @@ use crate::campaign::{Campaign, Run, RunError, Runner};
 use crate::fitting::design::TensorGauss;
 use crate::fitting::fit::gpc::{Projection, project, total_degree};
 use crate::fitting::fit::multi_element::{Division, EQUAL, MultiElement, division};
-use crate::fitting::fit::{FitMethod, Fitted, Stop};
+use crate::fitting::fit::{FitMethod, Fitted};
 use crate::fitting::regression::ErrorMeasures;
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::Spectrum;
@@ -21,6 +21,7 @@ use crate::study::Study;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::polynomials::{IndexSet, Mesh, MultiIndex, Recurrence};
+use pcc_evaluate::surrogate::StopReason;
 use pcc_evaluate::surrogate::{Counts, Surrogate};
 
 /// Nodes whose coordinates are held in memory together.
@@ -263,10 +264,10 @@ impl<'a> Elements<'a> {
             derivative_weight: None,
             degree,
             stop: match (varies, &self.study.fit.method) {
-                (false, _) => Stop::Constant,
-                (true, FitMethod::MultiElement(_)) if is_done => Stop::Settled,
-                (true, FitMethod::MultiElement(_)) => Stop::Limited,
-                (true, _) => Stop::GivenDegree,
+                (false, _) => StopReason::Constant,
+                (true, FitMethod::MultiElement(_)) if is_done => StopReason::Settled,
+                (true, FitMethod::MultiElement(_)) => StopReason::Limited,
+                (true, _) => StopReason::GivenDegree,
             },
         }
     }

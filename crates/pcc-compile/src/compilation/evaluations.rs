@@ -105,7 +105,7 @@ impl<'a> Evaluations<'a> {
         let new_points = standardized.points().skip(old);
         let points: Vec<Vec<f64>> = new_points.map(|point| self.study.inputs.physical(point)).collect();
         observer.begin("model runs", points.len() as u64);
-        let runs = self.runner.run_some(&points, observer);
+        let runs = self.runner.run_skipping(&points, observer);
         observer.finish();
         for (i, run) in (old..).zip(runs?) {
             if let Some(run) = run {

@@ -4,13 +4,13 @@ use super::components::ComponentResult;
 use super::evaluations::{Evaluations, Level};
 use crate::fitting::design::NestedLatinHypercube;
 use crate::fitting::fit::method::{MethodSetting, Value};
-use crate::fitting::fit::{FitMethod, Fitted, Stop};
+use crate::fitting::fit::{FitMethod, Fitted};
 use crate::fitting::regression::Gradients;
 use crate::study::Study;
 use pcc_evaluate::components::{Component, Output};
 use pcc_evaluate::polynomials::Mesh;
 use pcc_evaluate::surrogate::{
-    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, StopReason, Surrogate, Training,
+    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, Surrogate, Training,
 };
 
 fn setting(key: &str, value: SettingValue) -> Setting {
@@ -101,15 +101,7 @@ fn expansion(fitted: &Fitted, component: &Component) -> Expansion {
         corrected_s2: fitted.errors.and_then(|errors| errors.corrected_s2),
         leave_out: if fitted.derivative_weight.is_some() { LeaveOut::Run } else { LeaveOut::Row },
         degree: fitted.degree,
-        stop: match fitted.stop {
-            Stop::Accurate => StopReason::Accurate,
-            Stop::HighestDegree => StopReason::HighestDegree,
-            Stop::DesignExhausted => StopReason::DesignExhausted,
-            Stop::Constant => StopReason::Constant,
-            Stop::GivenDegree => StopReason::GivenDegree,
-            Stop::Settled => StopReason::Settled,
-            Stop::Limited => StopReason::Limited,
-        },
+        stop: fitted.stop,
     }
 }
 

@@ -4,8 +4,9 @@
 //! stability proportion is small enough; or when that error has not fallen for [`PATIENCE`] levels while the design
 //! grew to [`GROWTH`] times its size; or at the largest design.
 
-use crate::fitting::fit::{Fitted, Stop};
+use crate::fitting::fit::Fitted;
 use crate::study::Study;
+use pcc_evaluate::surrogate::StopReason;
 
 /// Levels without a lower estimate, and growth of the design over them, after which more runs are taken to be of no
 /// use: where stability is within rounding of its limit everywhere, or where the model jumps.
@@ -62,7 +63,7 @@ impl StoppingRule {
 
 /// Whether no component asks for a larger design.
 fn are_accurate(fitted: &[Fitted]) -> bool {
-    fitted.iter().all(|fit| fit.stop != Stop::DesignExhausted)
+    fitted.iter().all(|fit| fit.stop != StopReason::DesignExhausted)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! What a surrogate records beside its coefficients.
 
 use crate::polynomials::IndexSet;
+use serde::Serialize;
 
 /// Where a surrogate comes from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -181,8 +182,8 @@ pub struct SelfTest {
     pub tolerance: f64,
 }
 
-/// A verified bound on the stability proportion.
-#[derive(Debug, Clone, PartialEq)]
+/// A verified bound on the stability proportion. Reports serialise it; surrogate files have a type of their own.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
     /// Seed of its points.
     pub seed: u64,
@@ -201,5 +202,6 @@ pub struct Certificate {
     /// Upper end.
     pub upper: f64,
     /// `pcc_compile::study::Study::problem_hash` of the model that was run.
+    #[serde(skip_serializing)]
     pub problem_hash: String,
 }

@@ -14,12 +14,13 @@ use super::method::{
     ComponentFit, Design, Domain, Entry, FitMethod, FitSize, Given, Key, MAX_DEGREE, Meaningless, MethodSetting,
     Previous, Profile, Solver as ReadySolver, Value, number_setting,
 };
-use super::{Fitted, Stop, WEIGHTS};
+use super::{Fitted, WEIGHTS};
 use crate::fitting::design::TensorGauss;
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
 use nalgebra::DMatrix;
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
 use pcc_evaluate::polynomials::{Hyperbolic, IndexSet, IndexSetError, Recurrence};
+use pcc_evaluate::surrogate::StopReason;
 use std::ops::Range;
 
 /// Nodes whose polynomials are held in memory together: at most so many, and so many values of polynomials.
@@ -274,9 +275,9 @@ pub fn least_squares(
         basis.extend(indices[1..].to_vec())?;
         // Terms that the points cannot tell apart are left out, and where a point alone determines one, nothing is
         // known there.
-        let fitted = Fitted::new(&basis, degree, Stop::GivenDegree)?;
+        let fitted = Fitted::new(&basis, degree, StopReason::GivenDegree)?;
         let is_determined = basis.indices().len() == indices.len() && s2(&fitted).is_finite();
-        Ok(if is_determined { fitted } else { Fitted { stop: Stop::DesignExhausted, ..fitted } })
+        Ok(if is_determined { fitted } else { Fitted { stop: StopReason::DesignExhausted, ..fitted } })
     };
     if response.gradients.is_none() {
         return fit(0.0);
@@ -286,7 +287,7 @@ pub fn least_squares(
     for weight in others {
         let found = fit(weight)?;
         // A fit that is not determined, or leaves terms out because there are fewer values, is no full expansion.
-        let is_full = |fitted: &Fitted| fitted.stop == Stop::GivenDegree;
+        let is_full = |fitted: &Fitted| fitted.stop == StopReason::GivenDegree;
         if is_full(&found) && (!is_full(&best.0) || s2(&found) > s2(&best.0)) {
             best = (found, weight);
         }
@@ -352,8 +353,8 @@ mod tests {
             least_squares(&tables, Response::of(&values[..count], 0.0), &indices, &Silent).unwrap()
         };
         let exact = fit(25, 3);
-        assert_eq!((exact.stop, exact.indices.len()), (Stop::GivenDegree, 10));
+        assert_eq!((exact.stop, exact.indices.len()), (StopReason::GivenDegree, 10));
         assert!(exact.errors.unwrap().s2.unwrap() > 1.0 - TOLERANCE);
-        assert_eq!(fit(8, 3).stop, Stop::DesignExhausted);
+        assert_eq!(fit(8, 3).stop, StopReason::DesignExhausted);
     }
 }

@@ -28,12 +28,13 @@
 use super::method::{self, ComponentFit, Entry, FitMethod, MAX_DEGREE, Profile, S2_TARGET, Smooth, Solver};
 use super::prior_search::{Found, Search, most_runs};
 use super::regularized::Regularized;
-use super::{BlindResiduals, Fitted, Stop};
+use super::{BlindResiduals, Fitted};
 use crate::fitting::regression::{BasisTables, Equations, ErrorMeasures, Response};
 use nalgebra::{DMatrix, DVector};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{IndexSet, MultiIndex};
 use pcc_evaluate::probability::statistics::Moments;
+use pcc_evaluate::surrogate::StopReason;
 
 /// Candidates per equation: prior variances beyond them are negligible (2, 4 and 8 gave the same results).
 const CANDIDATES_PER_EQUATION: usize = 2;
@@ -176,7 +177,7 @@ pub fn fit(
         leave_one_out_residuals: Some(left_out.iter().map(|residual| residual * problem.scale).collect()),
         derivative_weight: response.gradients.map(|_| found_before.found.weight),
         degree,
-        stop: if is_accurate { Stop::Accurate } else { Stop::DesignExhausted },
+        stop: if is_accurate { StopReason::Accurate } else { StopReason::DesignExhausted },
     };
     Ok((fitted, found_before))
 }
@@ -354,7 +355,7 @@ mod tests {
         let values: Vec<f64> = samples.points().map(smooth).collect();
         let response = Response::of(&values, 0.0);
         let (fitted, _) = fit(&tables(&samples), response, &settings(), &Previous::nothing(2), &Silent).unwrap();
-        assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8 && fitted.stop == Stop::Accurate);
+        assert!(fitted.errors.unwrap().s2.unwrap() > 1.0 - 1e-8 && fitted.stop == StopReason::Accurate);
         assert!(fitted.blind_residuals.is_none(), "a first design has chosen everything itself");
     }
 
@@ -366,7 +367,7 @@ mod tests {
             let values: Vec<f64> = samples.points().map(|x| (1.3 * x[0]).sin()).collect();
             let response = Response::of(&values, 1e-13);
             let (fitted, _) = fit(&tables(&samples), response, &settings(), &Previous::nothing(1), &Silent).unwrap();
-            assert_eq!(fitted.stop, Stop::Accurate, "{size} points");
+            assert_eq!(fitted.stop, StopReason::Accurate, "{size} points");
         }
     }
 
@@ -393,7 +394,7 @@ mod tests {
             let values: Vec<f64> = (0..size).map(|_| stream.next_unit()).collect();
             let response = Response::of(&values, 0.0);
             let (fitted, _) = fit(&tables(&samples), response, &settings(), &Previous::nothing(2), &Silent).unwrap();
-            assert_ne!(fitted.stop, Stop::Accurate, "{size} points: {:?}", fitted.errors);
+            assert_ne!(fitted.stop, StopReason::Accurate, "{size} points: {:?}", fitted.errors);
         }
     }
 }

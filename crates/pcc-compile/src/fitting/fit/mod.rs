@@ -20,29 +20,10 @@ pub use prior::Prior;
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{IndexSet, MultiIndex};
+use pcc_evaluate::surrogate::StopReason;
 
 /// Weights of derivatives beside values that fits try: as good as values, less and less to be trusted, not used.
 pub(crate) const WEIGHTS: [f64; 4] = [1.0, 0.1, 0.01, 0.0];
-
-/// Why a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Stop {
-    /// S² reached its target.
-    Accurate,
-    /// The highest degree was reached.
-    HighestDegree,
-    /// The fit asks for more points: S² missed its target or, for stepwise regression, N < 2 card(A) at the next
-    /// degree.
-    DesignExhausted,
-    /// The values do not vary: the mean is exact.
-    Constant,
-    /// The degree was given: nothing was searched.
-    GivenDegree,
-    /// No element asks to be divided any more.
-    Settled,
-    /// Elements that ask to be divided are left, because there may be no more of them, or no more model runs.
-    Limited,
-}
 
 /// Leave-one-out residuals at points on which the fit was not tuned, so that they flatter it little or not at all: for
 /// the minimum-norm fit, points that its prior has not seen; for matching pursuit, points outside the folds, which only
@@ -74,12 +55,12 @@ pub struct Fitted {
     /// Degree p at which a stepwise search ended; the highest total degree of the terms for the other methods.
     pub degree: u16,
     /// Why it ended.
-    pub stop: Stop,
+    pub stop: StopReason,
 }
 
 impl Fitted {
     /// A least-squares fit.
-    fn new(basis: &ActiveBasis<'_>, degree: u16, stop: Stop) -> Result<Self, Interrupted> {
+    fn new(basis: &ActiveBasis<'_>, degree: u16, stop: StopReason) -> Result<Self, Interrupted> {
         let mut terms: Vec<(MultiIndex, f64)> = basis.indices().iter().cloned().zip(basis.coefficients()).collect();
         terms.sort_by(|a, b| a.0.cmp(&b.0));
         let (indices, coefficients) = terms.into_iter().unzip();
@@ -106,7 +87,7 @@ impl Fitted {
         let values = Response::of(response.values, response.resolution);
         let basis = ActiveBasis::constant(tables, values, variance, 0.0, observer)?;
         let weight = response.gradients.map(|_| 0.0);
-        Ok(Self { derivative_weight: weight, ..Self::new(&basis, 0, Stop::DesignExhausted)? })
+        Ok(Self { derivative_weight: weight, ..Self::new(&basis, 0, StopReason::DesignExhausted)? })
     }
 
     /// The mean of values that do not vary.
@@ -121,7 +102,7 @@ impl Fitted {
             leave_one_out_residuals: Some(residuals),
             derivative_weight: None,
             degree: 0,
-            stop: Stop::Constant,
+            stop: StopReason::Constant,
         }
     }
 }

@@ -22,10 +22,11 @@ use super::method::{
     ComponentFit, Entry, FitMethod, FitSize, MAX_DEGREE, Previous, Profile, S2_TARGET, Smooth, Solver,
 };
 use super::pursuit_path::Path;
-use super::{BlindResiduals, Fitted, Stop, WEIGHTS};
+use super::{BlindResiduals, Fitted, WEIGHTS};
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{Hyperbolic, IndexSetError, MultiIndex};
+use pcc_evaluate::surrogate::StopReason;
 
 /// Norms q tried, from those that favour single inputs to all interactions.
 const Q_NORMS: [f64; 3] = [0.5, 0.75, 1.0];
@@ -171,7 +172,7 @@ pub fn fit(
             let fitted = chosen(tables, response, variance, &set, &terms, full_weight, observer)?;
             let s2 = fitted.errors.and_then(|errors| errors.s2);
             let is_accurate = s2.is_some_and(|s2| s2 >= settings.s2_target);
-            return Ok(if is_accurate { Fitted { stop: Stop::Accurate, ..fitted } } else { fitted });
+            return Ok(if is_accurate { Fitted { stop: StopReason::Accurate, ..fitted } } else { fitted });
         }
         Best::Validated(best) => best,
     }) else {
@@ -193,7 +194,7 @@ pub fn fit(
     let mut fitted = chosen(tables, response, variance, &set, &path.terms, weight, observer)?;
     let s2 = 1.0 - validation.error / variance;
     fitted.errors = fitted.errors.map(|errors| ErrorMeasures { s2: Some(s2), corrected_s2: None, ..errors });
-    fitted.stop = if s2 >= settings.s2_target { Stop::Accurate } else { Stop::DesignExhausted };
+    fitted.stop = if s2 >= settings.s2_target { StopReason::Accurate } else { StopReason::DesignExhausted };
     fitted.blind_residuals = Some(BlindResiduals { first: 0, values: validation.residuals.clone() });
     fitted.leave_one_out_residuals = Some(validation.residuals);
     Ok(fitted)
@@ -281,7 +282,7 @@ fn chosen(
     let mut basis = ActiveBasis::constant(tables, response.with_weight(weight), variance, weight, observer)?;
     basis.extend(terms)?;
     let degree = basis.indices().iter().map(MultiIndex::total_degree).max().unwrap_or(0) as u16;
-    let fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    let fitted = Fitted::new(&basis, degree, StopReason::DesignExhausted)?;
     Ok(Fitted { derivative_weight: response.gradients.map(|_| weight), ..fitted })
 }
 
@@ -309,7 +310,7 @@ mod tests {
     #[test]
     fn few_terms_among_many_inputs_are_found_exactly() {
         let found = fitted(6, 60, |x| 2.0 + x[0] - 3.0 * x[2] * x[4] + 0.5 * x[5]);
-        assert_eq!((found.indices.len(), found.stop), (4, Stop::Accurate));
+        assert_eq!((found.indices.len(), found.stop), (4, StopReason::Accurate));
     }
 
     /// The error of the selected terms would fall to rounding; that of the folds does not.
@@ -326,7 +327,7 @@ mod tests {
         for size in [2, 3] {
             let found = fitted(2, size, |x| x[0] + x[1] * x[1]);
             let errors = found.errors.unwrap();
-            assert!(found.stop == Stop::DesignExhausted && errors.s2.unwrap() < 0.5, "{errors:?}");
+            assert!(found.stop == StopReason::DesignExhausted && errors.s2.unwrap() < 0.5, "{errors:?}");
         }
     }
 }

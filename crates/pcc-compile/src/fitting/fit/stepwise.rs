@@ -24,10 +24,11 @@ use super::method::{
     ComponentFit, DEFAULT_DEGREE, DEFAULT_S2, Design, Domain, Entry, FitMethod, FitSize, Key, MAX_DEGREE, Previous,
     Profile, S2_TARGET, Solver, number_setting, s2_setting,
 };
-use super::{Fitted, Stop, WEIGHTS};
+use super::{Fitted, WEIGHTS};
 use crate::fitting::regression::{ActiveBasis, BasisTables, Response};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{Hyperbolic, IndexSetError, MultiIndex};
+use pcc_evaluate::surrogate::StopReason;
 
 /// Mean leverage of a value beyond which there are too few points: P/N for N < 2 card(A) (step 4 of the paper).
 const LARGEST_LEVERAGE: f64 = 0.5;
@@ -189,7 +190,9 @@ pub fn fit(
         let outcome = search(tables, response.with_weight(weight), variance, weight, shells, settings, observer)?;
         let s2 = match &outcome {
             // A design that is too small for full weight is not made large enough by a poor fit with less.
-            Outcome::Fitted(fitted) if best.is_some() && wants_points && fitted.stop != Stop::Accurate => continue,
+            Outcome::Fitted(fitted) if best.is_some() && wants_points && fitted.stop != StopReason::Accurate => {
+                continue;
+            }
             Outcome::Fitted(fitted) => fitted.errors.and_then(|errors| errors.s2).unwrap_or(f64::NEG_INFINITY),
             Outcome::TooFewSamples { .. } => f64::NEG_INFINITY,
         };
@@ -230,10 +233,10 @@ fn search(
             return Ok(Outcome::TooFewSamples { indices: before, degree: degree - 1 }); // step 4
         }
         if basis.s2().is_some_and(|s2| s2 >= settings.s2_target) {
-            return Ok(Outcome::Fitted(Fitted::new(&basis, degree, Stop::Accurate)?)); // step 5
+            return Ok(Outcome::Fitted(Fitted::new(&basis, degree, StopReason::Accurate)?)); // step 5
         }
     }
-    Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, Stop::HighestDegree)?))
+    Ok(Outcome::Fitted(Fitted::new(&basis, settings.max_degree, StopReason::HighestDegree)?))
 }
 
 /// The fit on given terms, {0} first, for a design that cannot grow to what [`fit`] asked for; derivatives have full
@@ -254,7 +257,7 @@ pub fn settle(
     };
     let mut basis = ActiveBasis::constant(tables, response, variance, 1.0, observer)?;
     basis.extend(indices[1..].to_vec())?;
-    let fitted = Fitted::new(&basis, degree, Stop::DesignExhausted)?;
+    let fitted = Fitted::new(&basis, degree, StopReason::DesignExhausted)?;
     Ok(Fitted { derivative_weight: response.gradients.map(|_| 1.0), ..fitted })
 }
 
@@ -334,7 +337,7 @@ mod tests {
         let problem = problem(60, 1.0);
         let terms = [([0, 0], 3.0), ([1, 0], 2.0), ([0, 2], -1.0), ([2, 1], 0.5)];
         let found = fitted(problem.fit(&problem.values(&terms), &settings(1.0, 0.999_999)));
-        assert_eq!((found.degree, found.stop), (3, Stop::Accurate));
+        assert_eq!((found.degree, found.stop), (3, StopReason::Accurate));
         for (alpha, coefficient) in terms {
             let at = found.indices.iter().position(|index| **index == alpha).unwrap();
             assert!((found.coefficients[at] - coefficient).abs() < 1e-12);
@@ -404,7 +407,7 @@ mod tests {
         assert!(12 >= 2 * indices.len() && indices[0].is_constant());
         let response = Response::of(&values, 1e-13);
         let settled = settle(&problem.tables, response, &indices, degree, &Silent).unwrap();
-        assert_eq!((settled.degree, settled.stop), (degree, Stop::DesignExhausted));
+        assert_eq!((settled.degree, settled.stop), (degree, StopReason::DesignExhausted));
         assert_eq!(settled.indices.len(), indices.len());
     }
 
@@ -427,7 +430,7 @@ mod tests {
         let problem = problem(10, 1.0);
         let values: Vec<f64> = (0..10).map(|i| 7.0 + 1e-15 * f64::from(i)).collect();
         let found = fitted(problem.fit(&values, &settings(1.0, 0.999)));
-        assert_eq!((found.indices.len(), found.stop, found.errors), (1, Stop::Constant, None));
+        assert_eq!((found.indices.len(), found.stop, found.errors), (1, StopReason::Constant, None));
         assert!((found.coefficients[0] - 7.0).abs() < 1e-13);
     }
 

@@ -145,7 +145,7 @@ pub trait Model: Sync {
     }
 
     /// [`Model::eigenvalues`] at many points, an answer each.
-    fn eigenvalues_together(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Complex<f64>>, ModelError>> {
+    fn eigenvalues_together(&self, points: &[&[f64]]) -> Vec<Result<Vec<Complex<f64>>, ModelError>> {
         points.iter().map(|point| self.eigenvalues(point)).collect()
     }
 

@@ -16,7 +16,7 @@ impl Model for CommandModel {
         }
     }
 
-    fn eigenvalues_together(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Complex<f64>>, ModelError>> {
+    fn eigenvalues_together(&self, points: &[&[f64]]) -> Vec<Result<Vec<Complex<f64>>, ModelError>> {
         self.run_batch(points).into_iter().map(|answer| answer.map_err(ModelError::from)).collect()
     }
 

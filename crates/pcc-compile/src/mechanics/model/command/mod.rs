@@ -74,11 +74,11 @@ impl CommandModel {
     /// # Errors
     ///
     /// For each point as [`CommandModel::run`].
-    pub fn run_batch(&self, points: &[Vec<f64>]) -> Vec<Result<Vec<Complex<f64>>, CommandError>> {
+    pub fn run_batch<P: AsRef<[f64]>>(&self, points: &[P]) -> Vec<Result<Vec<Complex<f64>>, CommandError>> {
         match self.settings.mode {
-            Mode::Each => points.iter().map(|point| self.run(point)).collect(),
+            Mode::Each => points.iter().map(|point| self.run(point.as_ref())).collect(),
             Mode::Batch if points.is_empty() => Vec::new(),
-            Mode::Batch => self.answers(&points.iter().map(Vec::as_slice).collect::<Vec<_>>()),
+            Mode::Batch => self.answers(&points.iter().map(AsRef::as_ref).collect::<Vec<_>>()),
         }
     }
 

@@ -31,7 +31,7 @@ fn rows_in_any_order_answer_their_runs() {
         assert_same_bits(&answer.unwrap(), &echoed(point));
     }
     assert_same_bits(&program.run(&points[0]).unwrap(), &echoed(&points[0]));
-    assert!(program.run_batch(&[]).is_empty());
+    assert!(program.run_batch::<Vec<f64>>(&[]).is_empty());
     assert_eq!(fs::read_to_string(folder.path().join("study/log")).unwrap().lines().count(), 2);
     assert!(runs(&folder).is_empty());
 }
