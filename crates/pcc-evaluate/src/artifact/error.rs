@@ -2,14 +2,20 @@
 
 use super::version::{MAJOR, MINOR};
 use crate::foundation::FileError;
+use std::io;
 use thiserror::Error;
 
 /// Why a file is not a usable surrogate.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReadError {
     /// The operating system refused.
-    #[error("cannot be read: {0}")]
-    Io(String),
+    #[error("cannot be read: {message}")]
+    Io {
+        /// What kind of failure it is.
+        kind: io::ErrorKind,
+        /// Why, in words.
+        message: String,
+    },
     /// Shorter than the smallest surrogate.
     #[error("is not a surrogate: it has {length} bytes, fewer than the {smallest} of an empty one; build it again")]
     TooShort {

@@ -163,7 +163,7 @@ pub fn read(path: &Path) -> Result<Artifact, ReadError> {
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
-        .map_err(|error| ReadError::Io(error.to_string()))?;
+        .map_err(|error| ReadError::Io { kind: error.kind(), message: error.to_string() })?;
     decode(&bytes)
 }
 

@@ -7,6 +7,8 @@
 mod answer;
 mod error;
 mod request;
+#[cfg(test)]
+mod tests;
 
 pub use answer::{Evaluation, Session};
 pub use error::SessionError;

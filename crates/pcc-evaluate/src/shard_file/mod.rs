@@ -15,7 +15,7 @@ use crate::foundation::{InstructionSet, sha256};
 use crate::surrogate::Surrogate;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::Path;
 use thiserror::Error;
@@ -78,8 +78,13 @@ struct Body {
 #[derive(Debug, Error)]
 pub enum PartError {
     /// The file cannot be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(String),
+    #[error("cannot be read: {message}")]
+    Unreadable {
+        /// What kind of failure it is.
+        kind: io::ErrorKind,
+        /// Why, in words.
+        message: String,
+    },
     /// Something else.
     #[error("is no part of an evaluation; give files that pcc eval --part has written")]
     NotAPart,
@@ -199,8 +204,9 @@ impl Part {
     /// [`PartError`].
     pub fn read(path: &Path) -> Result<Self, PartError> {
         let mut bytes = Vec::new();
-        let file = File::open(path).map_err(|error| PartError::Unreadable(error.to_string()))?;
-        file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| PartError::Unreadable(error.to_string()))?;
+        File::open(path)
+            .and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes))
+            .map_err(|error| PartError::Unreadable { kind: error.kind(), message: error.to_string() })?;
         Self::from_bytes(&bytes)
     }
 

@@ -39,6 +39,8 @@ pub enum JournalError {
     Io {
         /// The journal.
         path: String,
+        /// What kind of failure it is.
+        kind: io::ErrorKind,
         /// What the system said.
         cause: String,
     },
@@ -250,7 +252,7 @@ fn is_at(_: &File, _: &Path) -> io::Result<bool> {
 }
 
 fn io_error(path: &Path, cause: &io::Error) -> JournalError {
-    JournalError::Io { path: path.display().to_string(), cause: cause.to_string() }
+    JournalError::Io { path: path.display().to_string(), kind: cause.kind(), cause: cause.to_string() }
 }
 
 fn header() -> [u8; HEADER_BYTES] {

@@ -318,3 +318,53 @@ impl FitMethod {
         !self.is_quadrature()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn default(entry: &Entry, inputs: usize) -> FitMethod {
+        (entry.read)(&Given::default(), inputs).unwrap()
+    }
+
+    #[test]
+    fn every_method_says_its_own_name_and_has_the_settings_it_names() {
+        for entry in &METHODS {
+            let profile = default(entry, 3).profile();
+            assert_eq!(profile.name, entry.name);
+            assert_eq!(profile.design == Design::Growing, entry.grows, "{}", entry.name);
+            for setting in &profile.settings {
+                assert!(entry.keys.iter().any(|key| key.name == setting.key), "{}: {}", entry.name, setting.key);
+            }
+        }
+    }
+
+    /// What is printed with every default filled in means the same when it is read.
+    #[test]
+    fn settings_that_are_said_and_read_again_are_the_same() {
+        for entry in &METHODS {
+            let method = default(entry, 5);
+            let profile = method.profile();
+            let mut given = Given(vec![(MAX_DEGREE.name, Value::Whole(profile.max_degree.into()))]);
+            given.0.extend(profile.settings.into_iter().map(|setting| (setting.key, setting.value)));
+            assert_eq!((entry.read)(&given, 5), Ok(method));
+        }
+    }
+
+    #[test]
+    fn a_key_means_the_same_in_every_method() {
+        let keys = || METHODS.iter().flat_map(|entry| entry.keys);
+        let said = |key: &Key| match key.domain {
+            Domain::Whole { least, most } => format!("{least} to {most}"),
+            Domain::Number { expected, .. } => expected.to_owned(),
+            Domain::Word(words) => words.join(", "),
+        };
+        for key in keys() {
+            assert!(
+                keys().filter(|other| other.name == key.name).all(|other| said(other) == said(key)),
+                "{}",
+                key.name
+            );
+        }
+    }
+}
