@@ -39,7 +39,8 @@ fn help_of_every_command() {
     assert_output!("help", text);
 }
 
-/// The commands that the help of the program lists, but for `help` itself: each begins a line that is indented by two spaces.
+/// The commands that the help of the program lists, but for `help` itself: each begins a line that is indented by two
+/// spaces.
 fn commands(help: &str) -> Vec<String> {
     let (_, from_commands) = help.split_once("\nCommands:\n").unwrap();
     let (list, _) = from_commands.split_once("\n\n").unwrap();

@@ -19,8 +19,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Double precision against 50 digits, rounded once; eigenvalues are accurate to 1e-11 next to coalescence.
 const PROJECTION_TOLERANCE: f64 = 1e-10;
 
-/// Half the points of the documented study, `pcc reproduce --runs 1000000`: they leave errors of the size of the bars below open by
-/// 0.02 %, 10⁵ of them by 0.04 %.
+/// Half the points of the documented study, `pcc reproduce --runs 1000000`: they leave errors of the size of the bars
+/// below open by 0.02 %, 10⁵ of them by 0.04 %.
 const POINTS: u64 = 500_000;
 
 fn study(inputs: usize, kind: &str, lines: &str) -> Study {
@@ -120,8 +120,8 @@ fn elements_reach_the_papers_errors_with_its_numbers_of_elements() {
     }
 }
 
-/// So few points are misclassified that many are needed. The shipped surrogate stands for the model on them, and its own distance
-/// from the model is added, which is so small that fewer points tell it.
+/// So few points are misclassified that many are needed. The shipped surrogate stands for the model on them, and its
+/// own distance from the model is added, which is so small that fewer points tell it.
 #[test]
 fn full_expansions_of_invariants_need_only_degree_3() {
     let shipped = read(&repository("surrogates/clutch-r8.pcc")).unwrap().surrogate;

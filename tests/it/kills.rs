@@ -15,8 +15,9 @@ const RUNS: usize = 1000;
 const JOBS: usize = 12;
 const KILLS: usize = 50;
 
-/// A slow program: it says where it was started, waits, and answers. The inputs are the eigenvalue, so that the shell needs no
-/// other program but to wait: starting programs is most of what this test costs. Values are taken with the comma that follows.
+/// A slow program: it says where it was started, waits, and answers. The inputs are the eigenvalue, so that the shell
+/// needs no other program but to wait: starting programs is most of what this test costs. Values are taken with the
+/// comma that follows.
 const MODEL: &str = r#"#!/bin/sh
 { read -r _; read -r _ mu; read -r _ k; } < params.json
 echo "{\"mu\": $mu \"k\": $k}" >> "$PCC_STUDY_DIR/log"

@@ -50,8 +50,8 @@ pub fn built(name: &str) -> &'static Surrogate {
 /// Points of a shared sample.
 const SAMPLE_POINTS: u64 = 50_000;
 
-/// The model with so many inputs at the first points under seed 1: run once for all tests that judge surrogates on them, because
-/// that costs more than the builds and evaluations of most surrogates.
+/// The model with so many inputs at the first points under seed 1: run once for all tests that judge surrogates on
+/// them, because that costs more than the builds and evaluations of most surrogates.
 pub fn model_sample(inputs: usize) -> &'static ModelSample<'static> {
     static SAMPLES: [OnceLock<ModelSample<'static>>; 8] = [const { OnceLock::new() }; 8];
     SAMPLES[inputs - 1].get_or_init(|| {

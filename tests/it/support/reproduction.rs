@@ -1,5 +1,5 @@
-//! The paper's table 2 by `pcc reproduce`, made once for all tests that judge its rows: its builds and its model runs are most of
-//! what these tests cost.
+//! The paper's table 2 by `pcc reproduce`, made once for all tests that judge its rows: its builds and its model runs
+//! are most of what these tests cost.
 
 use super::command::{files, output};
 use serde::Deserialize;
@@ -7,8 +7,8 @@ use std::ffi::OsString;
 use std::fs;
 use std::sync::LazyLock;
 
-/// Points of the model that every surrogate is compared with; a single point weighs 0.002 % of them and up to 0.01 % of the
-/// proportion. Fewer than the documented table is made of, and all bars hold with them as well.
+/// Points of the model that every surrogate is compared with; a single point weighs 0.002 % of them and up to 0.01 % of
+/// the proportion. Fewer than the documented table is made of, and all bars hold with them as well.
 pub const POINTS: &str = "50000";
 
 /// What `pcc reproduce --only table2` has said and written.

@@ -1,7 +1,7 @@
 //! The evaluator: a surrogate, compiled into a plan, at millions of points.
 //!
-//! `kernel` evaluates one block of points; `questions` draws samples, asks questions about them and sums up what it finds;
-//! `analysis` finds what needs several values per sample. Nothing here knows a model, a design or a fit: what is
+//! `kernel` evaluates one block of points; `questions` draws samples, asks questions about them and sums up what it
+//! finds; `analysis` finds what needs several values per sample. Nothing here knows a model, a design or a fit: what is
 //! deployed carries no model code.
 
 mod analysis;
