@@ -1,5 +1,5 @@
-//! The schema of surrogate files in JSON. Here, and not with the other tests, because a validator takes as long to compile
-//! as the evaluator: `cargo test -p pcc-tools`, which `.ci/run` does.
+//! The schema of surrogate files in JSON. Here, and not with the other tests, because a validator takes as long to
+//! compile as the evaluator: `cargo test -p pcc-tools`, which `.ci/run` does.
 
 use pcc_evaluate::artifact::schema;
 use serde_json::Value;
