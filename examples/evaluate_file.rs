@@ -16,7 +16,7 @@ fn main() -> Result<(), pcc::Error> {
     println!("stable in {:.3} % of cases, by sampling ± {:.3}", 100.0 * share.value, 100.0 * share.standard_error);
     let of_stability = found.sensitivities.as_ref().and_then(|all| all.stability.as_ref());
     for (name, index) in surrogate.inputs.names().zip(of_stability.into_iter().flatten()) {
-        println!("{name:8} has a part in {:3.0} % of that", 100.0 * index.total.value);
+        println!("{name:8} decides {:3.0} % of that, alone or with others", 100.0 * index.total.value);
     }
     Ok(())
 }

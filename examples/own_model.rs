@@ -18,9 +18,6 @@ eigenvalues = 4
 [inputs]
 mu = { distribution = "uniform", lower = 0.0, upper = 0.5 }
 k  = { distribution = "uniform", nominal = 100.0, spread = 0.1 }
-
-[fit]
-derivatives = "auto"
 "#;
 
 /// M Ü + C U̇ + K U = 0 with K = [k + 20, −40 μ; 40 μ, k].
@@ -60,6 +57,12 @@ fn main() -> Result<(), pcc::Error> {
     let surrogate = build_with(&study, Box::new(Belt), &Silent)?;
     let stable = monte_carlo(&surrogate, 1_000_000, 1, &Silent)?.stable_proportion();
     println!("{} model runs", surrogate.training.counts.direct_computations);
-    println!("stable in {:.2} % of cases: {:?}", 100.0 * stable.value(), stable.wilson(0.95));
+    let interval = stable.wilson(0.95);
+    println!(
+        "stable in {:.2} % of cases, from {:.2} to {:.2} %",
+        100.0 * stable.value(),
+        100.0 * interval.lower,
+        100.0 * interval.upper
+    );
     Ok(())
 }

@@ -56,11 +56,11 @@ pub use pcc_compile::reference::{Comparison, certify_with_model, compare_with_mo
 
 // A surrogate and what it answers.
 pub use pcc_evaluate::artifact::Format;
-pub use pcc_evaluate::evaluation::{Condition, Event, Question, Sampler, Sweep, monte_carlo};
+pub use pcc_evaluate::evaluation::{Bins, Condition, Event, Question, Sampler, Sweep, monte_carlo};
 pub use pcc_evaluate::foundation::{InstructionSet, Observer, Silent};
 pub use pcc_evaluate::probability::statistics::{Interval, Proportion};
-pub use pcc_evaluate::session::{Evaluation, Request, Session};
-pub use pcc_evaluate::surrogate::Surrogate;
+pub use pcc_evaluate::session::{Evaluation, HistogramRequest, Request, Session};
+pub use pcc_evaluate::surrogate::{Certificate, Surrogate};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

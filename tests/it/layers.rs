@@ -151,6 +151,23 @@ fn every_folder_is_a_room_of_the_map_and_every_room_is_there() {
     }
 }
 
+/// Files and folders that the map names, in whichever crate, are there: `study/raw.rs`, `fitting/fit/`.
+#[test]
+fn every_path_on_the_map_exists() {
+    let map = text("ARCHITECTURE.md");
+    let mut roots: Vec<PathBuf> = vec![repository("")];
+    roots.extend(rooms().iter().map(|room| repository(&room.sources)));
+    let (mut checked, quoted) = (0, map.split('`').skip(1).step_by(2));
+    for path in quoted.filter(|path| path.contains('/') && !path.contains([' ', ':', '→'])) {
+        assert!(
+            roots.iter().any(|root| root.join(path).exists() || root.join(format!("{path}.rs")).exists()),
+            "{path}"
+        );
+        checked += 1;
+    }
+    assert!(checked > 40, "the paths are read: {checked}");
+}
+
 /// Paths to other rooms start with `crate::`, where the other tests see them: `super::` stays inside a room.
 #[test]
 fn rooms_are_not_left_by_super() {

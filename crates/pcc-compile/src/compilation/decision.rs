@@ -72,7 +72,7 @@ pub(super) struct Previous {
     /// Proportion of stable points.
     proportion: f64,
     /// Mean |Δp| by residuals that took part in the fit.
-    discordance: f64,
+    mean_change: f64,
 }
 
 /// What is known of a surrogate's decision.
@@ -110,7 +110,7 @@ pub(super) fn judge(
     }
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
-    let now = Previous { proportion: judge.proportion(), discordance: by_seen.mean_of(f64::abs) };
+    let now = Previous { proportion: judge.proportion(), mean_change: by_seen.mean_of(f64::abs) };
     let (reducible_error, whole_error) = match previous {
         Some(previous) if blind.len() >= LEAST_BLIND.min(runs.len()) => {
             let by_blind = judge.shares(&blind, runs.len() - blind.len())?;
@@ -193,7 +193,7 @@ fn relative_error(shares: &Shares, effective_runs: f64, previous: Previous, now:
     let count = shares.effective_count();
     let is_significant = mean.abs() > SIGNIFICANT * (square / count).sqrt();
     let systematic = if is_significant { mean } else { 0.0 };
-    let (square_now, square_former) = (now.discordance.powi(2), previous.discordance.powi(2));
+    let (square_now, square_former) = (now.mean_change.powi(2), previous.mean_change.powi(2));
     let left = if square_former > 0.0 { square_now / (square_now + square_former) } else { 0.5 };
     let change = (now.proportion - previous.proportion) * left;
     let cautious = square * (1.0 + count.sqrt().recip()).powi(2);
@@ -343,7 +343,7 @@ mod tests {
     #[test]
     fn scattered_errors_average_out_and_common_ones_do_not() {
         let weights = vec![1.0; 100];
-        let now = Previous { proportion: 0.5, discordance: 0.01 };
+        let now = Previous { proportion: 0.5, mean_change: 0.01 };
         let scattered = Shares { shares: (0..100).map(|i| if i % 2 == 0 { 0.01 } else { -0.01 }).collect(), weights };
         assert!((relative_error(&scattered, 100.0, now, now, UNSEEN) - 1.1 * 0.01 / 10.0 / 0.5).abs() < UNSEEN);
         let common = Shares { shares: vec![0.01; 100], weights: vec![1.0; 100] };
@@ -353,8 +353,8 @@ mod tests {
     #[test]
     fn the_change_between_levels_counts_by_how_far_errors_fell() {
         let none = Shares { shares: vec![0.0; 10], weights: vec![1.0; 10] };
-        let previous = Previous { proportion: 0.52, discordance: 0.03 };
-        let now = Previous { proportion: 0.5, discordance: 0.01 };
+        let previous = Previous { proportion: 0.52, mean_change: 0.03 };
+        let now = Previous { proportion: 0.5, mean_change: 0.01 };
         assert!((relative_error(&none, 10.0, previous, now, UNSEEN) - 0.02 * 0.1 / 0.5).abs() < UNSEEN);
         let resolved = relative_error(&none, 10.0, now, now, UNSEEN);
         assert!(resolved > 0.0 && resolved < UNSEEN, "nothing seen is not nothing there");

@@ -39,13 +39,13 @@ pub fn certify_with_model<'a>(
         return Err(ReferenceError::other_problem(surrogate, study));
     }
     let plan = Plan::new(surrogate);
-    let mut discordance = DiscordantCounts { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
+    let mut counts = DiscordantCounts { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
     for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |_, points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
         for (run, &max_re) in found.iter().zip(&block.max_re) {
             let (model, predicted) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
-            discordance.falsely_stable += u64::from(predicted && !model);
-            discordance.falsely_unstable += u64::from(model && !predicted);
+            counts.falsely_stable += u64::from(predicted && !model);
+            counts.falsely_unstable += u64::from(model && !predicted);
         }
         Ok(())
     })?;
@@ -53,13 +53,13 @@ pub fn certify_with_model<'a>(
         EvalError::Interrupted(interrupted) => ReferenceError::Run(interrupted.into()),
         other => ReferenceError::Surrogate(other),
     })?;
-    let Interval { lower, upper, level } = discordance.bound(summary.stable_proportion(), level);
+    let Interval { lower, upper, level } = counts.bound(summary.stable_proportion(), level);
     Ok(Certificate {
         seed,
         samples: runs,
         scheme: SCHEME.to_owned(),
-        falsely_stable: discordance.falsely_stable,
-        falsely_unstable: discordance.falsely_unstable,
+        falsely_stable: counts.falsely_stable,
+        falsely_unstable: counts.falsely_unstable,
         level,
         lower,
         upper,

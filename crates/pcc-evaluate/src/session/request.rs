@@ -52,7 +52,7 @@ pub struct Request {
     pub histograms: Vec<HistogramRequest>,
     /// Probabilities of quantiles of max Re λ and of every mode.
     pub quantile_levels: Vec<f64>,
-    /// Name of the input whose critical value is looked for.
+    /// Name of the input whose critical value is looked for; a [`super::Session`] is told it beside the question.
     pub critical: Option<String>,
 }
 

@@ -4,7 +4,7 @@
 //! few terms. Both are judged by cross-validation: the former by its closed-form leave-one-out error, the latter by
 //! folds, because its leave-one-out error does not see the selection of terms.
 
-use super::method::{ComponentFit, Entry, FitMethod, FitSize, MAX_DEGREE, Profile, S2_TARGET, Smooth, Solver};
+use super::method::{Entry, FitMethod, FitSize, MAX_DEGREE, MethodFit, Profile, S2_TARGET, Smooth, Solver};
 use super::omp::Candidates;
 use super::{Fitted, minimum_norm, omp};
 use crate::fitting::regression::{BasisTables, Response};
@@ -64,7 +64,7 @@ impl Solver for Ready<'_> {
         previous: &Previous,
         _: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<ComponentFit>, Interrupted> {
+    ) -> Result<Option<MethodFit>, Interrupted> {
         fit(tables, response, &self.candidates, self.settings, previous, observer).map(Some)
     }
 }
@@ -82,7 +82,7 @@ pub fn fit(
     settings: &Smooth,
     previous: &Previous,
     observer: &dyn Observer,
-) -> Result<ComponentFit, Interrupted> {
+) -> Result<MethodFit, Interrupted> {
     let (smooth, minimum_norm) = minimum_norm::fit(tables, response, settings, &previous.minimum_norm, observer)?;
     let mut previous = Previous { minimum_norm, ..*previous };
     if !previous.tries_pursuit || smooth.errors.is_none() {

@@ -11,8 +11,8 @@
 //!   any. The weight of the equations of derivatives is the one with the best leave-one-out S².
 
 use super::method::{
-    ComponentFit, Design, Domain, Entry, FitMethod, FitSize, Given, Key, MAX_DEGREE, Meaningless, MethodSetting,
-    Previous, Profile, Solver as ReadySolver, Value, number_setting,
+    Design, Domain, Entry, FitMethod, FitSize, Given, Key, MAX_DEGREE, Meaningless, MethodFit, MethodSetting, Previous,
+    Profile, Solver as ReadySolver, Value, number_setting,
 };
 use super::{Fitted, WEIGHTS};
 use crate::fitting::design::TensorGauss;
@@ -138,7 +138,7 @@ impl ReadySolver for Ready {
         previous: &Previous,
         _: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<ComponentFit>, Interrupted> {
+    ) -> Result<Option<MethodFit>, Interrupted> {
         Ok(Some((least_squares(tables, response, &self.0, observer)?, METHOD.name, previous.clone())))
     }
 }

@@ -244,7 +244,7 @@ pub struct FitSize {
 pub type Previous = auto::Previous;
 
 /// A fitted component, the name of the method that fitted it, and what the next design starts from.
-pub type ComponentFit = (Fitted, &'static str, Previous);
+pub type MethodFit = (Fitted, &'static str, Previous);
 
 /// A method that is ready to fit components.
 pub trait Solver: Sync {
@@ -261,7 +261,7 @@ pub trait Solver: Sync {
         previous: &Previous,
         can_grow: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<ComponentFit>, Interrupted>;
+    ) -> Result<Option<MethodFit>, Interrupted>;
 }
 
 impl FitMethod {

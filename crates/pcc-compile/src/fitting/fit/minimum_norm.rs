@@ -25,7 +25,7 @@
 //!
 //! Finally terms too small to matter beside that error are dropped: the expansion is sparse.
 
-use super::method::{self, ComponentFit, Entry, FitMethod, MAX_DEGREE, Profile, S2_TARGET, Smooth, Solver};
+use super::method::{self, Entry, FitMethod, MAX_DEGREE, MethodFit, Profile, S2_TARGET, Smooth, Solver};
 use super::prior_search::{Found, Search, most_runs};
 use super::regularized::Regularized;
 use super::{BlindResiduals, Fitted};
@@ -85,7 +85,7 @@ impl Solver for Ready<'_> {
         previous: &method::Previous,
         _: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<ComponentFit>, Interrupted> {
+    ) -> Result<Option<MethodFit>, Interrupted> {
         let (fitted, minimum_norm) = fit(tables, response, self.0, &previous.minimum_norm, observer)?;
         Ok(Some((fitted, METHOD.name, method::Previous { minimum_norm, ..*previous })))
     }

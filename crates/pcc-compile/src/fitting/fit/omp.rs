@@ -18,9 +18,7 @@
 //! outnumber what N runs can tell apart. The path with the smallest cross-validated error is the fit.
 
 use super::cross_validation::{CrossValidation, Problem};
-use super::method::{
-    ComponentFit, Entry, FitMethod, FitSize, MAX_DEGREE, Previous, Profile, S2_TARGET, Smooth, Solver,
-};
+use super::method::{Entry, FitMethod, FitSize, MAX_DEGREE, MethodFit, Previous, Profile, S2_TARGET, Smooth, Solver};
 use super::pursuit_path::Path;
 use super::{BlindResiduals, Fitted, WEIGHTS};
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
@@ -77,7 +75,7 @@ impl Solver for Ready<'_> {
         previous: &Previous,
         _: bool,
         observer: &dyn Observer,
-    ) -> Result<Option<ComponentFit>, Interrupted> {
+    ) -> Result<Option<MethodFit>, Interrupted> {
         Ok(Some((fit(tables, response, &self.candidates, self.settings, observer)?, METHOD.name, previous.clone())))
     }
 }

@@ -34,10 +34,10 @@ enum Series {
 impl Series {
     /// Combines the trees if all chunks are there.
     fn settle(&mut self, division: &Division) {
-        if let Self::Some(forest) = self
-            && forest.first() == 0
-            && forest.end() == division.chunks_per_series()
-            && let Some(total) = forest.total()
+        if let Self::Some(tree) = self
+            && tree.first() == 0
+            && tree.end() == division.chunks_per_series()
+            && let Some(total) = tree.total()
         {
             *self = Self::All(total);
         }
@@ -45,7 +45,7 @@ impl Series {
 
     fn total(&self) -> Option<Tally> {
         match self {
-            Self::Some(forest) => forest.total(),
+            Self::Some(tree) => tree.total(),
             Self::All(tally) => Some(tally.clone()),
         }
     }
@@ -55,18 +55,18 @@ impl Series {
         let all = 0..division.chunks_per_series();
         match self {
             Self::All(tally) => *chunks == all && division.fits(chunks, tally),
-            Self::Some(forest) => {
+            Self::Some(tree) => {
                 *chunks != all
-                    && forest.is_consistent()
-                    && (forest.first()..forest.end()) == *chunks
-                    && forest.parts().all(|(chunks, tally)| division.fits(&chunks, tally))
+                    && tree.is_consistent()
+                    && (tree.first()..tree.end()) == *chunks
+                    && tree.parts().all(|(chunks, tally)| division.fits(&chunks, tally))
             }
         }
     }
 
     fn is_finite(&self) -> bool {
         match self {
-            Self::Some(forest) => forest.parts().all(|(_, tally)| tally.is_finite()),
+            Self::Some(tree) => tree.parts().all(|(_, tally)| tally.is_finite()),
             Self::All(tally) => tally.is_finite(),
         }
     }
@@ -89,8 +89,8 @@ impl Findings {
             self.series.push(Series::Some(MergeTree::new(inside)));
         }
         if let Some(series) = self.series.last_mut() {
-            if let Series::Some(forest) = series {
-                forest.push(tally);
+            if let Series::Some(tree) = series {
+                tree.push(tally);
             }
             series.settle(division);
         }

@@ -30,9 +30,9 @@ pub trait Merge {
 /// }
 ///
 /// let sum_of = |items: std::ops::Range<u64>| {
-///     let mut forest = MergeTree::new(items.start);
-///     items.for_each(|i| forest.push(Sum(1.0 / (i + 1) as f64)));
-///     forest
+///     let mut tree = MergeTree::new(items.start);
+///     items.for_each(|i| tree.push(Sum(1.0 / (i + 1) as f64)));
+///     tree
 /// };
 /// let whole = sum_of(0..1000);
 /// let mut parts = sum_of(0..123);
@@ -154,10 +154,10 @@ mod tests {
         }
     }
 
-    fn forest(items: std::ops::Range<u64>) -> MergeTree<Brackets> {
-        let mut forest = MergeTree::new(items.start);
-        items.for_each(|i| forest.push(Brackets(i.to_string())));
-        forest
+    fn tree(items: std::ops::Range<u64>) -> MergeTree<Brackets> {
+        let mut tree = MergeTree::new(items.start);
+        items.for_each(|i| tree.push(Brackets(i.to_string())));
+        tree
     }
 
     proptest! {
@@ -169,51 +169,51 @@ mod tests {
             let mut start = 0;
             let mut parts = MergeTree::new(0);
             for cut in cuts {
-                let part = forest(start..cut);
+                let part = tree(start..cut);
                 prop_assert!(part.is_consistent() && part.end() == cut);
                 prop_assert!(parts.append(part));
                 start = cut;
             }
-            prop_assert_eq!(&parts, &forest(0..count));
+            prop_assert_eq!(&parts, &tree(0..count));
             prop_assert!(parts.is_consistent());
         }
 
         #[test]
         fn a_part_holds_two_trees_per_level_at_most(start in 0..1000u64, count in 0..1000u64) {
-            let part = forest(start..start + count);
+            let part = tree(start..start + count);
             prop_assert!(part.trees.len() <= 20);
         }
     }
 
     #[test]
     fn the_order_is_that_of_the_tree() {
-        assert_eq!(forest(0..6).total().unwrap().0, "(((0 1) (2 3)) (4 5))");
-        assert_eq!(forest(3..6).total().unwrap().0, "(3 (4 5))");
-        assert_eq!(forest(0..0).total(), None);
+        assert_eq!(tree(0..6).total().unwrap().0, "(((0 1) (2 3)) (4 5))");
+        assert_eq!(tree(3..6).total().unwrap().0, "(3 (4 5))");
+        assert_eq!(tree(0..0).total(), None);
     }
 
     #[test]
     fn gaps_and_overlaps_are_not_appended() {
-        let mut parts = forest(0..4);
-        assert!(!parts.append(forest(5..6)) && !parts.append(forest(3..6)));
-        assert_eq!(parts, forest(0..4));
-        assert!(parts.append(forest(4..4)) && parts.append(forest(4..9)));
+        let mut parts = tree(0..4);
+        assert!(!parts.append(tree(5..6)) && !parts.append(tree(3..6)));
+        assert_eq!(parts, tree(0..4));
+        assert!(parts.append(tree(4..4)) && parts.append(tree(4..9)));
     }
 
     #[test]
     fn broken_trees_are_found() {
         let broken: [fn(&mut MergeTree<Brackets>); 5] = [
-            |forest| forest.first = 1,
-            |forest| forest.trees[1].index += 1,
-            |forest| forest.trees[1].level = 70,
-            |forest| forest.trees[1].index = u64::MAX,
-            |forest| {
+            |tree| tree.first = 1,
+            |tree| tree.trees[1].index += 1,
+            |tree| tree.trees[1].level = 70,
+            |tree| tree.trees[1].index = u64::MAX,
+            |tree| {
                 let last = Tree { level: 0, index: 7, value: Brackets(String::new()) };
-                forest.trees.push(last);
+                tree.trees.push(last);
             },
         ];
         for damage in broken {
-            let mut whole = forest(0..7);
+            let mut whole = tree(0..7);
             assert!(whole.is_consistent());
             damage(&mut whole);
             assert!(!whole.is_consistent(), "{whole:?}");

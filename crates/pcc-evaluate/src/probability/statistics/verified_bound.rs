@@ -36,8 +36,8 @@ const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 /// ```
 /// use pcc_evaluate::probability::statistics::{DiscordantCounts, Proportion};
 /// let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-/// let discordance = DiscordantCounts { samples: 300, falsely_stable: 2, falsely_unstable: 0 };
-/// let bound = discordance.bound(surrogate, 0.95);
+/// let counts = DiscordantCounts { samples: 300, falsely_stable: 2, falsely_unstable: 0 };
+/// let bound = counts.bound(surrogate, 0.95);
 /// assert!(bound.lower > 0.36 && bound.upper < 0.42);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
