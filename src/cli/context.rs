@@ -1,9 +1,8 @@
 //! What every command is given: where to print, whom to ask whether to stop, and work that several commands begin with.
 
 use super::terminal::Terminal;
-use super::{complain, print};
+use super::{about, complain, print};
 use crate::report::EvalReport;
-use anyhow::Context as _;
 use pcc_compile::campaign::{Books, Note, Recording};
 use pcc_compile::compilation::{BuildFileError, BuiltFile, build_to_file};
 use pcc_compile::study::Study;
@@ -64,7 +63,7 @@ impl Context {
     ) -> anyhow::Result<BuiltFile> {
         let built = build_to_file(study, path, format, recording, &self.terminal, &|note| self.note(note));
         built.map_err(|error| match error {
-            BuildFileError::Build(error) => anyhow::Error::from(error).context(source.to_owned()),
+            BuildFileError::Build(error) => about(source, error),
             other => other.into(),
         })
     }
@@ -73,7 +72,7 @@ impl Context {
     pub fn sample(&self, surrogate: &Surrogate, samples: u64, seed: u64) -> anyhow::Result<EvalReport> {
         let question = Question::plain(samples, seed);
         let session = Session::new(surrogate, &question, None, InstructionSet::best())?;
-        let found = session.run(&self.terminal).with_context(|| surrogate.provenance.study_name.clone())?;
+        let found = session.run(&self.terminal).map_err(|error| about(&surrogate.provenance.study_name, error))?;
         let report = EvalReport::of_surrogate(&found).filter(|report| report.complete);
         Ok(report.ok_or(Interrupted)?)
     }

@@ -51,7 +51,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Ok(Ending::CheckFailed) => ExitCode::from(1),
         Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
         Err(error) if is_interruption(&*error) => {
-            complain("interrupted");
+            complain(&message(&error));
             ExitCode::from(INTERRUPTED)
         }
         Err(error) => {
@@ -59,6 +59,13 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
             ExitCode::from(FAILED)
         }
     }
+}
+
+/// An error of long work on `what`; an interruption says nothing of that, since nothing is wrong with it.
+fn about<E: std::error::Error + Send + Sync + 'static>(what: &str, error: E) -> anyhow::Error {
+    let is_failure = !is_interruption(&error);
+    let error = anyhow::Error::from(error);
+    if is_failure { error.context(what.to_owned()) } else { error }
 }
 
 /// What went wrong, from the outside in. Errors of the library say their causes themselves; nothing is said twice.

@@ -41,7 +41,9 @@ pub(super) fn refuse_to_replace(path: &Path, output: Output, inputs: &[&Path]) -
         Output::Surrogate if !(is_empty || is_read && looks_like_a_surrogate(&start)) => {
             bail!("{shown}: exists and is not a surrogate; name another output, or remove it first")
         }
-        Output::Marked(mark) if !(is_empty || start.windows(mark.len()).any(|window| window == mark.as_bytes())) => {
+        Output::Marked(mark)
+            if !(is_empty || is_read && start.windows(mark.len()).any(|window| window == mark.as_bytes())) =>
+        {
             bail!("{shown}: exists and was not made by pcc; name another output, or remove it first")
         }
         Output::Table if !is_read || is_result(&start) => {

@@ -3,7 +3,7 @@
 use crate::cli::inputs::{read_study, read_surrogate};
 use crate::cli::overwrite::{Output, claim};
 use crate::cli::shared_options::{RecordingOptions, sample_count, seed};
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::CertifyReport;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -79,7 +79,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let start = Instant::now();
     let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))
-        .with_context(|| source.to_string())?;
+        .map_err(|error| about(&source.to_string(), error))?;
     surrogate.certificates.push(certificate);
     save(output, &encode(&surrogate, format)?)?;
     let elapsed = start.elapsed().as_secs_f64();

@@ -2,9 +2,8 @@
 
 use crate::cli::inputs::{read_study, read_surrogate};
 use crate::cli::shared_options::{RecordingOptions, percentage, sample_count, seed};
-use crate::cli::{Context, Ending, complain};
+use crate::cli::{Context, Ending, complain, about};
 use crate::report::{CompareReport, significant};
-use anyhow::Context as _;
 use clap::Args;
 use pcc_compile::reference::compare_with_model;
 use std::path::PathBuf;
@@ -47,7 +46,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let start = Instant::now();
     let comparison = compare_with_model(&surrogate, campaign, options.samples, options.seed, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))
-        .with_context(|| options.study.display().to_string())?;
+        .map_err(|error| about(&options.study.display().to_string(), error))?;
     let report = CompareReport::new(&study.name, &surrogate, &comparison, options.seed, start.elapsed().as_secs_f64());
     context.print(&report)?;
     match options.max_error {

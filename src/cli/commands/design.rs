@@ -2,7 +2,7 @@
 
 use crate::cli::inputs::read_study;
 use crate::cli::overwrite::{Output, claim};
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::DesignReport;
 use anyhow::Context as _;
 use clap::Args;
@@ -41,7 +41,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     claim(&options.emit, Output::Table, &[&options.study, &journal])?;
     let contents = if journal.exists() { Journal::read(&journal)? } else { Contents::default() };
     notes_on(&journal, &contents).iter().for_each(|note| context.note(note));
-    let step = ask(&study, &contents, &context.terminal).with_context(|| source.clone())?;
+    let step = ask(&study, &contents, &context.terminal).map_err(|error| about(&source, error))?;
     let (runs, open): (Vec<u64>, Vec<&[f64]>) = step.open().unzip();
     let inputs: Vec<String> = study.inputs.names().map(str::to_owned).collect();
     let constants = study.model.answers().map_or(&[][..], |answers| &answers.constants);

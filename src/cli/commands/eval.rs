@@ -6,7 +6,7 @@ use crate::cli::overwrite::{Output, claim, keep_inputs};
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
 use crate::cli::question_options::{QuestionOptions, Shard, shard};
 use crate::cli::shared_options::{Pictures, SamplingOptions};
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::PartReport;
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
@@ -85,7 +85,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         context.print(&write_part(context, &session, shard, file, name)?)?;
         return Ok(Ending::Done);
     }
-    let found = session.run(&context.terminal).with_context(|| name.clone())?;
+    let found = session.run(&context.terminal).map_err(|error| about(name, error))?;
     present(context, &found, &options.pictures)
 }
 
@@ -116,7 +116,7 @@ fn as_typed(error: SessionError, surrogate: &str) -> anyhow::Error {
         SessionError::CriticalSampler => {
             anyhow!("--critical: critical values are found from random samples; leave out --sampler")
         }
-        SessionError::Eval(error) => anyhow::Error::from(error).context(surrogate.to_owned()),
+        SessionError::Eval(error) => about(surrogate, error),
         other => other.into(),
     }
 }
@@ -139,7 +139,7 @@ fn write_part(
 ) -> anyhow::Result<PartReport> {
     let start = Instant::now();
     let found = session.run_shard(shard.number, shard.of, &context.terminal);
-    let part = found.with_context(|| surrogate.to_owned())?;
+    let part = found.map_err(|error| as_typed(error, surrogate))?;
     save(file, &part.to_bytes()?)?;
     Ok(PartReport {
         file: file.display().to_string(),

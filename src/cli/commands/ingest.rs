@@ -1,7 +1,7 @@
 //! `pcc ingest`: answers that others computed.
 
 use crate::cli::inputs::read_study;
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::IngestReport;
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
@@ -59,7 +59,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     notes_on(&path, &contents).iter().for_each(|note| context.note(note));
     let told = tell(&study, &journal, contents, &rows, options.replace, &context.terminal);
     let told = told.map_err(|error| match error {
-        TellError::Ask(AskError::Build(error)) => anyhow::Error::from(error).context(source.clone()),
+        TellError::Ask(AskError::Build(error)) => about(&source, error),
         TellError::CannotGoOn(cause) => {
             anyhow!("{shown}: with these answers the build cannot go on, so none was taken: {source}: {cause}")
         }

@@ -3,12 +3,12 @@
 use crate::cli::answers::{check_pictures, present};
 use crate::cli::overwrite::{Output, claim};
 use crate::cli::shared_options::Pictures;
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::MergeReport;
 use anyhow::Context as _;
 use clap::Args;
 use pcc_evaluate::foundation::save;
-use pcc_evaluate::session::Evaluation;
+use pcc_evaluate::session::{Evaluation, SessionError};
 use pcc_evaluate::shard_file::{MARK, Part, merge as merge_parts};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -64,7 +64,12 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         }
         context.say(&format!("written to {}", file.display()));
     }
-    let mut found = Evaluation::of_parts(&whole, files.len(), &context.terminal)?;
-    found.elapsed_seconds = start.elapsed().as_secs_f64();
+    let before = start.elapsed().as_secs_f64();
+    let found = Evaluation::of_parts(&whole, files.len(), &context.terminal);
+    let mut found = found.map_err(|error| match error {
+        SessionError::Eval(error) => about(&whole.surrogate.provenance.study_name, error),
+        other => other.into(),
+    })?;
+    found.elapsed_seconds += before;
     present(context, &found, &options.pictures)
 }

@@ -4,9 +4,8 @@ use crate::cli::inputs::read_study;
 use crate::cli::overwrite::keep_inputs;
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
 use crate::cli::shared_options::{RecordingOptions, SamplingOptions};
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::EvalReport;
-use anyhow::Context as _;
 use clap::Args;
 use pcc_compile::campaign::{Campaign, Runner};
 use pcc_compile::reference::monte_carlo;
@@ -45,7 +44,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let start = Instant::now();
     let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))
-        .with_context(|| options.study.display().to_string())?;
+        .map_err(|error| about(&options.study.display().to_string(), error))?;
     let elapsed = start.elapsed().as_secs_f64();
     context.print(&EvalReport::of_model(&study.name, &found.outputs, &found.summary, sampling.seed, elapsed))?;
     Ok(Ending::Done)
@@ -62,7 +61,7 @@ fn at_points(
     let mut runner = Runner::new(campaign)?;
     let file = PointsFile::open(points, &campaign.study.inputs, extrapolate)?;
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
-        let runs = runner.run(group, &context.terminal).with_context(|| source.clone())?;
+        let runs = runner.run(group, &context.terminal).map_err(|error| about(&source, error))?;
         let results = runs.into_iter().map(|run| (run.eigenvalues, run.spectrum.max_re())).collect();
         Ok(Evaluated { modes: runner.modes().to_vec(), results })
     })?;

@@ -3,7 +3,7 @@
 use crate::cli::inputs::{read_study, read_surrogate};
 use crate::cli::overwrite::{Output, SURROGATE_PAGE, claim};
 use crate::cli::shared_options::{RecordingOptions, run_count, sample_count, seed};
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
 use anyhow::Context as _;
 use clap::Args;
@@ -79,7 +79,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
                 ModelSample::new(campaign, options.runs.unwrap_or(default_runs), options.seed, &context.terminal)
                     .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
                     .inspect_err(|_| context.say_recorded(&books))
-                    .with_context(|| what.clone())?;
+                    .map_err(|error| about(&what, error))?;
             let seconds = start.elapsed().as_secs_f64();
             let compare = CompareReport::new(&surrogate.provenance.study_name, surrogate, &found.0, options.seed, seconds);
             Some((found.1, compare))

@@ -2,7 +2,7 @@
 
 use crate::cli::overwrite::{Output, REPRODUCTION_PAGE, claim};
 use crate::cli::shared_options::{run_count, seed};
-use crate::cli::{Context, Ending, complain};
+use crate::cli::{Context, Ending, complain, about};
 use crate::report::{figure_sheets, short_table_2};
 use crate::reproduce::{Options as Parts, Reproduction, Row};
 use anyhow::Context as _;
@@ -105,7 +105,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
                     }
                     Err(lost) => complain(&format!("the rows that were done could not be kept: {lost:#}")),
                 }
-                return Err(anyhow::Error::from(error).context("reproduce"));
+                return Err(about("reproduce", error));
             }
         }
     }

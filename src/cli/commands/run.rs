@@ -3,7 +3,7 @@
 use crate::cli::inputs::read_study;
 use crate::cli::overwrite::{Output, refuse_to_replace};
 use crate::cli::shared_options::{RecordingOptions, seed};
-use crate::cli::{Context, Ending};
+use crate::cli::{Context, Ending, about};
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table};
 use anyhow::Context as _;
 use clap::Args;
@@ -131,7 +131,7 @@ fn build_and_compare(
     let samples = if study.model.is_external() { COMPARE_PROGRAM_RUNS } else { COMPARE_SAMPLES };
     let start = Instant::now();
     let comparison = compare_with_model(&built.surrogate, campaign, samples, seed, &context.terminal)
-        .with_context(|| source.to_owned())
+        .map_err(|error| about(source, error))
         .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
     let compare = CompareReport::new(&study.name, &built.surrogate, &comparison, seed, start.elapsed().as_secs_f64());
     Ok((built.surrogate, build, compare))

@@ -76,8 +76,8 @@ pub fn build_with<'a>(
 /// everything fitted anew.
 fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
     let study = campaign.study;
-    let mut evaluations = Evaluations::new(campaign, model)?;
     let mut fit = ComponentFit::new(study)?;
+    let mut evaluations = Evaluations::new(campaign, model)?;
     let mut stopping = StoppingRule::new(study);
     let (mut sizes, mut grouping, mut previous) = (Vec::new(), Vec::new(), None);
     let mut size = study.design.initial;

@@ -1,7 +1,8 @@
-//! Linear algebra and minimisation that know nothing of mechanics or probability.
+//! Linear algebra, quadrature and minimisation that know nothing of mechanics or probability.
 
 pub mod eigenvalues;
 pub mod invariant_subspace;
 pub mod minimize;
 pub mod positive_definite;
 pub mod qr;
+pub mod quadrature;

@@ -183,7 +183,10 @@ impl Lines<'_> {
                 known.push(key.name);
             }
         }
-        StudyError::UnknownFitKey { place: self.place(format!("fit.{name}"), value), known: known.join(", ") }
+        StudyError::UnknownFitKey {
+            place: self.place(format!("fit.{}", name.escape_debug()), value),
+            known: known.join(", "),
+        }
     }
 
     /// The number of model runs that a method without a growing design takes, of one element for several; `None` for

@@ -48,12 +48,12 @@ const MOST_SWEEPS: usize = 60;
 /// end makes an entry outside the three diagonals, which the other rotations move up and out.
 fn sweep(start: usize, end: usize, nodes: &mut [f64], coupling: &mut [f64], first: &mut [f64]) {
     let half_gap = (nodes[start + 1] - nodes[start]) / (2.0 * coupling[start]);
-    let shift = nodes[start] - coupling[start] / (half_gap + half_gap.hypot(1.0).copysign(half_gap));
+    let shift = nodes[start] - coupling[start] / (half_gap + half_gap.mul_add(half_gap, 1.0).sqrt().copysign(half_gap));
     let (mut sine, mut cosine, mut correction) = (1.0, 1.0, 0.0);
     let mut remainder = nodes[end] - shift;
     for i in (start..end).rev() {
         let (outside, inside) = (sine * coupling[i], cosine * coupling[i]);
-        let length = outside.hypot(remainder);
+        let length = (outside * outside + remainder * remainder).sqrt();
         if i + 1 < end {
             coupling[i + 1] = length;
         }

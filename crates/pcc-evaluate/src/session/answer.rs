@@ -57,10 +57,7 @@ impl<'s> Session<'s> {
         instructions: InstructionSet,
     ) -> Result<Self, SessionError> {
         let survey = Survey::new(surrogate, question, instructions)?;
-        if question.sampler != Sampler::MonteCarlo && critical.is_some() {
-            return Err(SessionError::CriticalSampler);
-        }
-        let critical = critical.and_then(|name| surrogate.inputs.names().position(|known| known == name));
+        let critical = critical.map(|name| critical_input(surrogate, question, name)).transpose()?;
         Ok(Self { surrogate, question, survey, critical })
     }
 
@@ -83,10 +80,16 @@ impl<'s> Session<'s> {
     ///
     /// # Errors
     ///
-    /// [`EvalError`]; an interrupted shard is of no use.
-    pub fn run_shard(&self, number: u64, of: u64, observer: &dyn Observer) -> Result<Part, EvalError> {
+    /// [`SessionError::NoSuchShard`] if `number` is not below `of`; [`EvalError`] as of the whole. An interrupted shard
+    /// is of no use.
+    pub fn run_shard(&self, number: u64, of: u64, observer: &dyn Observer) -> Result<Part, SessionError> {
+        if number >= of {
+            return Err(SessionError::NoSuchShard { number, of });
+        }
         let chunks = self.survey.division().shard(number, of);
-        let Surveyed::Complete(findings) = self.survey.run(chunks, observer)? else { return Err(Interrupted.into()) };
+        let Surveyed::Complete(findings) = self.survey.run(chunks, observer)? else {
+            return Err(EvalError::from(Interrupted).into());
+        };
         Ok(Part { surrogate: self.surrogate.clone(), question: self.question.clone(), findings })
     }
 
@@ -127,6 +130,24 @@ impl<'s> Session<'s> {
         }
         Ok(evaluation)
     }
+}
+
+/// The number of the input whose critical values are looked for: at random values of the others, in all of its domain.
+pub(super) fn critical_input(surrogate: &Surrogate, question: &Question, name: &str) -> Result<usize, SessionError> {
+    let input = name.to_owned();
+    let Some(position) = surrogate.inputs.names().position(|known| known == name) else {
+        return Err(SessionError::NoSuchInput { input, known: surrogate.inputs.names().map(str::to_owned).collect() });
+    };
+    if question.conditions.iter().any(|condition| condition.input == name) {
+        return Err(SessionError::ConfinedInput { input });
+    }
+    if question.sampler != Sampler::MonteCarlo {
+        return Err(SessionError::CriticalSampler);
+    }
+    if !question.sweeps.is_empty() {
+        return Err(SessionError::CriticalOfSweep);
+    }
+    Ok(position)
 }
 
 /// `None` for an interruption.

@@ -33,6 +33,17 @@ pub enum SessionError {
     /// Critical values from other than random samples.
     #[error("critical values are found from random samples, with no other sampler")]
     CriticalSampler,
+    /// Critical values along a sweep.
+    #[error("critical values are found over all of the domain, not along a sweep")]
+    CriticalOfSweep,
+    /// A shard beyond the last.
+    #[error("there is no shard {number} of {of}; they are numbered from 0")]
+    NoSuchShard {
+        /// Number asked for.
+        number: u64,
+        /// Number of shards.
+        of: u64,
+    },
 }
 
 impl From<PilotError> for SessionError {

@@ -79,7 +79,6 @@ impl Request {
     ///
     /// [`SessionError`] names the quantity, input or condition that does not fit the surrogate.
     pub fn question(&self, surrogate: &Surrogate) -> Result<Question, SessionError> {
-        self.check_critical(surrogate)?;
         let mut question = Question {
             sampler: self.sampler,
             replicates: self.replicates.unwrap_or(self.sampler.default_replicates()),
@@ -109,18 +108,5 @@ impl Request {
                 of_modes.map(|quantity| pilot.fine_bins(quantity, &quantity.name(surrogate))).collect();
         }
         Ok(question)
-    }
-
-    /// The critical value of an input is looked for in all of its domain, at random values of the others.
-    fn check_critical(&self, surrogate: &Surrogate) -> Result<(), SessionError> {
-        let Some(input) = &self.critical else { return Ok(()) };
-        if surrogate.inputs.names().all(|known| known != input) {
-            let known = surrogate.inputs.names().map(str::to_owned).collect();
-            return Err(SessionError::NoSuchInput { input: input.clone(), known });
-        }
-        if self.conditions.iter().any(|condition| condition.input == *input) {
-            return Err(SessionError::ConfinedInput { input: input.clone() });
-        }
-        Ok(())
     }
 }

@@ -54,6 +54,9 @@ fn what_does_not_fit_is_refused_before_the_first_sample() {
     assert!(matches!(&confined, SessionError::ConfinedInput { input } if input == "mu"), "{confined}");
     let sobol = refusal(&Request { sampler: Sampler::Sobol, samples: 1024, ..critical("mu") });
     assert!(matches!(sobol, SessionError::CriticalSampler), "{sobol}");
+    let sweep = Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 3 };
+    let along = refusal(&Request { sweeps: vec![sweep], ..critical("k_p") });
+    assert!(matches!(along, SessionError::CriticalOfSweep), "{along}");
     assert!(matches!(refusal(&Request::plain(0, 1)), SessionError::Survey(_)));
 }
 
@@ -100,6 +103,7 @@ fn parts_say_what_one_evaluation_says() {
     let found = Evaluation::of_parts(&merged, 3, &Silent).unwrap();
     assert_eq!((&found.answer, &found.sensitivities), (&whole.answer, &whole.sensitivities));
     assert_eq!(found.merged_parts, Some(3));
+    assert!(matches!(session.run_shard(3, 3, &Silent), Err(SessionError::NoSuchShard { number: 3, of: 3 })));
     let without_the_last = merge(parts[..2].to_vec()).unwrap();
     let error = Evaluation::of_parts(&without_the_last, 2, &Silent).unwrap_err();
     assert!(matches!(error, SessionError::Part(PartError::Gap { .. })), "{error}");

@@ -4,7 +4,8 @@
 //! degree up to p are orthonormal on the nodes, too. Nodes are made from their numbers; none is stored.
 
 use super::samples::Samples;
-use pcc_evaluate::polynomials::{Recurrence, gauss};
+use crate::numerics::quadrature::gauss;
+use pcc_evaluate::polynomials::Recurrence;
 use std::ops::Range;
 
 /// A tensor product of Gauss rules, in standardized or local variables.

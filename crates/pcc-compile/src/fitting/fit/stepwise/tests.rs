@@ -7,22 +7,22 @@ use pcc_evaluate::polynomials::{Family, Hyperbolic};
 
 const DEGREE: u16 = 8;
 
-struct FitSize {
+struct Case {
     samples: Samples,
     tables: BasisTables,
     shells: Vec<Vec<MultiIndex>>,
 }
 
-fn problem(points: usize, q_norm: f64) -> FitSize {
+fn problem(points: usize, q_norm: f64) -> Case {
     let mut design = NestedLatinHypercube::new(2, 3);
     design.grow_to(points);
     let samples = design.samples(|_, u| 2.0 * u - 1.0);
     let recurrences = vec![Family::Legendre.recurrence(DEGREE.into()); 2];
     let tables = BasisTables::new(&samples, &recurrences, DEGREE.into());
-    FitSize { samples, tables, shells: Hyperbolic { inputs: 2, q_norm }.shells(DEGREE).unwrap() }
+    Case { samples, tables, shells: Hyperbolic { inputs: 2, q_norm }.shells(DEGREE).unwrap() }
 }
 
-impl FitSize {
+impl Case {
     /// Values of an expansion with these terms.
     fn values(&self, terms: &[([u16; 2], f64)]) -> Vec<f64> {
         let indices: Vec<MultiIndex> = terms.iter().map(|(alpha, _)| MultiIndex::new(alpha.to_vec())).collect();
