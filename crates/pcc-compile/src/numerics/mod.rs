@@ -1,5 +1,6 @@
 //! Linear algebra, quadrature and minimisation that know nothing of mechanics or probability.
 
+pub mod assignment;
 pub mod eigenvalues;
 pub mod invariant_subspace;
 pub mod minimize;
