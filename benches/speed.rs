@@ -46,7 +46,7 @@ fn direct_computation(criterion: &mut Criterion) {
                 one_core.install(|| {
                     let runner = Runner::new(&study).expect("the shipped study fits its model");
                     let runs = runner.with_derivatives(derivatives).run(black_box(&points), &Silent);
-                    assert_eq!(black_box(runs.expect("the clutch converges"))[0].reduced.is_some(), derivatives);
+                    assert_eq!(black_box(runs.expect("the clutch converges"))[0].reductions.is_some(), derivatives);
                 });
             });
         });

@@ -1,6 +1,7 @@
 //! Points from a CSV file, results to another.
 
 use num_complex::Complex;
+use pcc_evaluate::components::{Label, Verdict};
 use pcc_evaluate::foundation::{Observer, save_with};
 use pcc_evaluate::probability::inputs::{InputError, InputSpace};
 use serde::Serialize;
@@ -9,6 +10,9 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 use thiserror::Error;
+
+/// The columns after the eigenvalues.
+const RESULT_COLUMNS: [&str; 3] = ["max_re", "stable", "verdict"];
 
 /// Points that are read, evaluated and written together: memory does not grow with the file.
 const GROUP: usize = 4096;
@@ -60,10 +64,10 @@ impl fmt::Display for PointsReport {
 
 /// What points yield.
 pub(super) struct Evaluated {
-    /// Frequency ranks of the modes.
-    pub modes: Vec<usize>,
-    /// Per point, eigenvalues of the modes and max Re λ.
-    pub results: Vec<(Vec<Complex<f64>>, f64)>,
+    /// Names of the eigenvalues.
+    pub labels: Vec<Label>,
+    /// Per point, the eigenvalues by label, and that with the largest Re λ.
+    pub results: Vec<(Vec<Complex<f64>>, Complex<f64>)>,
 }
 
 /// A CSV file with one column per input.
@@ -131,8 +135,9 @@ impl<'a> PointsFile<'a> {
         Ok(points)
     }
 
-    /// Evaluates all points in groups and writes `path`: the point, re_k and im_k of each mode, max_re, stable. Returns
-    /// the number of points and of stable ones. Nothing is written if anything fails.
+    /// Evaluates all points in groups and writes `path`: the point, re_k and im_k of each mode (and re_k_b, where it
+    /// can have two real eigenvalues), the other real eigenvalues, max_re, stable, verdict. Returns the number of
+    /// points and of stable ones. Nothing is written if anything fails.
     pub fn evaluate(
         mut self,
         path: &Path,
@@ -153,11 +158,13 @@ impl<'a> PointsFile<'a> {
                     }
                 };
                 if rows == 0 {
-                    writer.write_record(header(self.inputs, &found.modes))?;
+                    writer.write_record(header(self.inputs, &found.labels))?;
                 }
-                for (point, (eigenvalues, max_re)) in points.iter().zip(&found.results) {
-                    write_row(&mut writer, point, eigenvalues, *max_re)?;
-                    stable += u64::from(*max_re < 0.0);
+                let order = in_order(&found.labels);
+                for (point, (eigenvalues, top)) in points.iter().zip(&found.results) {
+                    let cells = order.iter().flat_map(|&at| cells(found.labels[at], eigenvalues[at]));
+                    write_row(&mut writer, point.iter().copied().chain(cells), *top)?;
+                    stable += u64::from(top.re < 0.0);
                 }
                 rows += points.len() as u64;
             }
@@ -184,7 +191,7 @@ impl<'a> PointsFile<'a> {
             return if rows_before == 0 { Err(in_file(PointsError::Empty).into()) } else { Ok(None) };
         }
         let found = evaluate(&points)?;
-        match found.results.iter().position(|(_, max_re)| !max_re.is_finite()) {
+        match found.results.iter().position(|(_, top)| !top.re.is_finite()) {
             Some(at) => Err(in_file(PointsError::NotFinite { row: rows_before + 1 + at as u64 }).into()),
             None => Ok(Some((points, found))),
         }
@@ -217,24 +224,43 @@ impl<R: Read> Read for ShortLines<R> {
     }
 }
 
-fn header(inputs: &InputSpace, modes: &[usize]) -> Vec<String> {
+/// Positions of the labels in the order of columns: mode by mode, then the real eigenvalues.
+fn in_order(labels: &[Label]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..labels.len()).collect();
+    order.sort_by_key(|&at| match labels[at] {
+        Label::Mode(mode) => (mode, 0),
+        Label::Second(mode) => (mode, 1),
+        Label::Real(number) => (usize::MAX, number),
+    });
+    order
+}
+
+fn header(inputs: &InputSpace, labels: &[Label]) -> Vec<String> {
     let mut header: Vec<String> = inputs.names().map(str::to_owned).collect();
-    header.extend(modes.iter().flat_map(|mode| [format!("re_{mode}"), format!("im_{mode}")]));
-    header.extend(["max_re".to_owned(), "stable".to_owned()]);
+    for at in in_order(labels) {
+        header.push(labels[at].growth_rate());
+        header.extend(labels[at].mode().map(|mode| format!("im_{mode}")));
+    }
+    header.extend(RESULT_COLUMNS.map(str::to_owned));
     header
+}
+
+/// Re λ, and Im λ of the first eigenvalue of a mode.
+fn cells(label: Label, lambda: Complex<f64>) -> impl Iterator<Item = f64> {
+    std::iter::once(lambda.re).chain(label.mode().map(|_| lambda.im))
 }
 
 /// Numbers by their shortest exact decimals.
 fn write_row<W: Write>(
     writer: &mut csv::Writer<W>,
-    point: &[f64],
-    eigenvalues: &[Complex<f64>],
-    max_re: f64,
+    numbers: impl Iterator<Item = f64>,
+    top: Complex<f64>,
 ) -> csv::Result<()> {
-    for value in point.iter().copied().chain(eigenvalues.iter().flat_map(|lambda| [lambda.re, lambda.im])) {
+    for value in numbers.chain([top.re]) {
         writer.write_field(format!("{value:?}"))?;
     }
-    writer.write_field(format!("{max_re:?}"))?;
-    writer.write_field(if max_re < 0.0 { "1" } else { "0" })?;
+    let verdict = Verdict::of(top);
+    writer.write_field(if verdict == Verdict::Stable { "1" } else { "0" })?;
+    writer.write_field(verdict.name())?;
     writer.write_record(None::<&[u8]>)
 }

@@ -104,9 +104,13 @@ pub(super) fn sweep(text: &str) -> Result<Sweep, String> {
     Ok(Sweep { input, from, to, points })
 }
 
-/// `QUANTITY<VALUE` or `QUANTITY>VALUE`.
+/// `QUANTITY<VALUE`, `QUANTITY>VALUE`, `flutter` or `divergence`.
 pub(super) fn event(text: &str) -> Result<Event, String> {
-    const FORM: &str = "write QUANTITY<VALUE or QUANTITY>VALUE in quotes, like 'max_re<-1'";
+    const FORM: &str =
+        "write QUANTITY<VALUE or QUANTITY>VALUE in quotes, like 'max_re<-1', or the word flutter or divergence";
+    if let Some(event) = Event::of_kind(text.trim()) {
+        return Ok(event);
+    }
     let place = text.find(['<', '>']).ok_or(FORM)?;
     let (quantity, rest) = text.split_at(place);
     let quantity = quantity.trim();

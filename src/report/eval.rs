@@ -4,10 +4,10 @@ use super::build::FitReport;
 use super::confidence::Confidence;
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
-use pcc_evaluate::components::{ModeSummary, Output, Summary};
+use pcc_evaluate::components::{EigenvalueSummary, Label, Output, Summary};
 use pcc_evaluate::evaluation::{Condition, Question, Sampler};
 use pcc_evaluate::foundation::count;
-use pcc_evaluate::probability::statistics::{Moments, Share};
+use pcc_evaluate::probability::statistics::{Interval, Moments, Proportion, Share};
 use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::{Quantile, Surrogate};
 use serde::Serialize;
@@ -38,6 +38,16 @@ pub struct EvalReport {
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
+    /// Share of unstable samples.
+    pub unstable_proportion: f64,
+    /// Share of samples that are unstable and whose eigenvalue with the largest Re λ oscillates.
+    pub flutter_proportion: f64,
+    /// Share of samples that are unstable and whose eigenvalue with the largest Re λ is real.
+    pub divergence_proportion: f64,
+    /// Intervals of these shares: what the finite number of samples leaves open.
+    pub intervals: Intervals,
+    /// What stability is judged by.
+    pub judged_by: String,
     /// Standard error of the share: from the spread of replicates, or of independent samples.
     pub standard_error: f64,
     /// How sure that is.
@@ -47,6 +57,8 @@ pub struct EvalReport {
     pub max_re: Statistics,
     /// What engineers read, per mode.
     pub modes: Vec<ModeReport>,
+    /// Real eigenvalues that belong to no mode.
+    pub real_eigenvalues: Vec<RealReport>,
     /// Every component.
     pub components: Vec<ComponentReport>,
     /// Sobol' indices of what decides stability; absent for a model.
@@ -94,10 +106,23 @@ pub struct Statistics {
     pub maximum: f64,
 }
 
+/// Intervals of shares.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Intervals {
+    /// Of stable samples.
+    pub stable: Interval,
+    /// Of unstable ones.
+    pub unstable: Interval,
+    /// Of those that flutter.
+    pub flutter: Interval,
+    /// Of those that diverge.
+    pub divergence: Interval,
+}
+
 /// One mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModeReport {
-    /// Frequency rank, from 1.
+    /// Its number, from 1.
     pub mode: usize,
     /// Im λ/2π, in Hz.
     pub frequency_hz: Statistics,
@@ -107,6 +132,25 @@ pub struct ModeReport {
     pub damping_ratio: Statistics,
     /// Share of samples in which this mode is unstable, Re λ ≥ 0.
     pub unstable_share: f64,
+    /// Share of samples in which it oscillates.
+    pub oscillating_share: f64,
+    /// Share of samples in which its two eigenvalues are real and stable.
+    pub overdamped_share: f64,
+    /// Share of samples in which it oscillates and is unstable.
+    pub flutter_share: f64,
+    /// Share of samples in which it is real and unstable.
+    pub divergence_share: f64,
+}
+
+/// A real eigenvalue that belongs to no mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RealReport {
+    /// Its name.
+    pub name: String,
+    /// λ, in 1/s.
+    pub growth_rate: Statistics,
+    /// Share of samples in which it is unstable, λ ≥ 0.
+    pub divergence_share: f64,
 }
 
 /// One component.
@@ -178,6 +222,13 @@ impl EvalReport {
         };
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
+        let interval = |hits: fn(&Summary) -> u64| cell.share(LEVEL, |tally| hits(&tally.summary)).interval;
+        report.intervals = Intervals {
+            stable: share.interval,
+            unstable: interval(Summary::unstable),
+            flutter: interval(Summary::fluttering),
+            divergence: interval(|summary| summary.divergent),
+        };
         report.confidence = Confidence::new(surrogate, stable, summary.stable_if_shifted, share.interval);
         report.confidence.basis.replicates = cell.replicates.len().max(1) as u64;
         if !is_whole {
@@ -214,7 +265,11 @@ impl EvalReport {
         elapsed_seconds: f64,
     ) -> Self {
         let stable = summary.stable_proportion();
-        let ranks = outputs.iter().flat_map(|output| output.modes.iter().copied());
+        let labelled: Vec<(Label, &EigenvalueSummary)> =
+            outputs.iter().flat_map(Output::labels).zip(&summary.eigenvalues).collect();
+        let proportion = |hits: u64| Proportion { hits, samples: stable.samples };
+        let wilson = |hits: u64| proportion(hits).wilson(LEVEL);
+        let (unstable, flutter, divergence) = (summary.unstable(), summary.fluttering(), summary.divergent);
         let mut names: Vec<_> = outputs.iter().flat_map(|output| &output.components).collect();
         names.sort_by_key(|component| component.id);
         Self {
@@ -229,10 +284,24 @@ impl EvalReport {
             conditions: Vec::new(),
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
+            unstable_proportion: proportion(unstable).value(),
+            flutter_proportion: proportion(flutter).value(),
+            divergence_proportion: proportion(divergence).value(),
+            intervals: Intervals {
+                stable: stable.wilson(LEVEL),
+                unstable: wilson(unstable),
+                flutter: wilson(flutter),
+                divergence: wilson(divergence),
+            },
+            judged_by: match source {
+                "model" => "all eigenvalues".to_owned(),
+                _ => judged_by(labelled.iter().map(|(label, _)| *label)),
+            },
             standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
             confidence: Confidence::of_model(stable),
             max_re: Statistics::of(&summary.max_re, 1.0),
-            modes: ranks.zip(&summary.modes).map(|(mode, part)| mode_report(mode, part, stable.samples)).collect(),
+            modes: modes(&labelled, stable.samples),
+            real_eigenvalues: real_eigenvalues(&labelled, stable.samples),
             components: names
                 .into_iter()
                 .zip(&summary.components)
@@ -266,14 +335,42 @@ impl Statistics {
     }
 }
 
-fn mode_report(mode: usize, summary: &ModeSummary, samples: u64) -> ModeReport {
-    ModeReport {
-        mode,
-        frequency_hz: Statistics::of(&summary.angular_frequency, 1.0 / TAU),
+fn modes(labelled: &[(Label, &EigenvalueSummary)], samples: u64) -> Vec<ModeReport> {
+    let share = |count: u64| count as f64 / samples as f64;
+    let report = |(label, summary): &(Label, &EigenvalueSummary)| {
+        let EigenvalueSummary { unstable, real, divergent, .. } = **summary;
+        Some(ModeReport {
+            mode: label.mode()?,
+            frequency_hz: Statistics::of(&summary.angular_frequency, 1.0 / TAU),
+            growth_rate: Statistics::of(&summary.growth_rate, 1.0),
+            damping_ratio: Statistics::of(&summary.damping_ratio, 1.0),
+            unstable_share: share(unstable),
+            oscillating_share: share(samples - real),
+            overdamped_share: share(real - divergent),
+            flutter_share: share(unstable - divergent),
+            divergence_share: share(divergent),
+        })
+    };
+    labelled.iter().filter_map(report).collect()
+}
+
+fn real_eigenvalues(labelled: &[(Label, &EigenvalueSummary)], samples: u64) -> Vec<RealReport> {
+    let reals = labelled.iter().filter(|(label, _)| matches!(label, Label::Real(_)));
+    let report = |(label, summary): &(Label, &EigenvalueSummary)| RealReport {
+        name: label.growth_rate(),
         growth_rate: Statistics::of(&summary.growth_rate, 1.0),
-        damping_ratio: Statistics::of(&summary.damping_ratio, 1.0),
-        unstable_share: summary.unstable as f64 / samples as f64,
-    }
+        divergence_share: summary.unstable as f64 / samples as f64,
+    };
+    reals.map(report).collect()
+}
+
+/// The eigenvalues that a surrogate carries, in words.
+pub(super) fn judged_by(labels: impl Iterator<Item = Label>) -> String {
+    let labels: Vec<Label> = labels.collect();
+    let modes: Vec<String> = labels.iter().filter_map(|label| label.mode()).map(|mode| mode.to_string()).collect();
+    let reals = labels.iter().filter(|label| matches!(label, Label::Real(_))).map(|label| label.growth_rate());
+    let modes = (!modes.is_empty()).then(|| format!("modes {}", modes.join(", ")));
+    modes.into_iter().chain(reals).collect::<Vec<_>>().join(", ")
 }
 
 fn analyses(surrogate: &Surrogate) -> Vec<Analysis> {

@@ -1,6 +1,6 @@
 //! The answer of `eval` and `reference` as people read it.
 
-use super::eval::{EvalReport, SobolReport, Statistics};
+use super::eval::{EvalReport, RealReport, SobolReport, Statistics};
 use super::survey::{conditions_text, events_text, histogram_text, quantiles_table};
 use super::table::{Align, Table, significant};
 use pcc_evaluate::evaluation::Sampler;
@@ -38,12 +38,12 @@ impl fmt::Display for EvalReport {
         writeln!(f, "{study}: {samples} samples of the {} {how}, seed {}\n", self.source, self.seed)?;
         self.write_circumstances(f)?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-        let modes: Vec<String> = self.modes.iter().map(|mode| mode.mode.to_string()).collect();
-        let judged_by = match self.source {
-            "model" => "all modes".to_owned(),
-            _ => format!("modes {}", modes.join(", ")),
-        };
-        writeln!(f, "  stable                 {}   judged by {judged_by}", percent(self.stable_proportion))?;
+        writeln!(f, "  stable                 {}   judged by {}", percent(self.stable_proportion), self.judged_by)?;
+        if self.divergence_proportion > 0.0 || !self.real_eigenvalues.is_empty() {
+            let [unstable, flutter, divergence] =
+                [self.unstable_proportion, self.flutter_proportion, self.divergence_proportion].map(percent);
+            writeln!(f, "  unstable               {unstable}   flutter {flutter}, divergence {divergence}")?;
+        }
         match self.source {
             "model" => {
                 let Interval { lower, upper, level } = self.confidence.interval;
@@ -63,6 +63,9 @@ impl fmt::Display for EvalReport {
             )?;
         }
         writeln!(f, "\n{}", self.mode_table())?;
+        if let Some(table) = self.kind_table() {
+            writeln!(f, "{table}")?;
+        }
         write!(f, "{}", self.component_table())?;
         writeln!(f, "re in 1/s, im in rad/s")?;
         if let Some(table) = quantiles_table(&self.quantiles) {
@@ -141,7 +144,31 @@ impl EvalReport {
                 table.row([rank, what.to_owned(), mean, deviation, minimum, maximum, unstable]);
             }
         }
+        for RealReport { name, growth_rate, divergence_share } in &self.real_eigenvalues {
+            let [mean, deviation, minimum, maximum] = growth_rate.cells();
+            let unstable = format!("{:.2} %", 100.0 * divergence_share);
+            table.row([name.clone(), "growth rate, 1/s".to_owned(), mean, deviation, minimum, maximum, unstable]);
+        }
         table
+    }
+
+    /// In how many samples modes oscillate, are overdamped, flutter and diverge; empty if all of them always oscillate.
+    pub(super) fn kind_table(&self) -> Option<Table> {
+        let right = Align::Right;
+        let mut table = Table::new(&[
+            ("mode", Align::Left),
+            ("oscillates", right),
+            ("overdamped", right),
+            ("flutters", right),
+            ("diverges", right),
+        ]);
+        let varied: Vec<_> = self.modes.iter().filter(|mode| mode.oscillating_share < 1.0).collect();
+        for mode in &varied {
+            let shares = [mode.oscillating_share, mode.overdamped_share, mode.flutter_share, mode.divergence_share];
+            let row = std::iter::once(mode.mode.to_string());
+            table.row(row.chain(shares.map(|share| format!("{:.2} %", 100.0 * share))));
+        }
+        (!varied.is_empty()).then_some(table)
     }
 
     fn component_table(&self) -> Table {

@@ -1,8 +1,9 @@
 //! Which inputs decide stability, and where one of them does.
 
 use super::table::{Align, Table, significant};
+use pcc_evaluate::components::Label;
 use pcc_evaluate::evaluation::{
-    CRITICAL_LEVELS, CriticalValues, Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity,
+    CRITICAL_LEVELS, CriticalValues, Crossing, Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity,
 };
 use serde::Serialize;
 use std::fmt;
@@ -118,6 +119,82 @@ pub struct CriticalReport {
     pub maximum: Option<f64>,
     /// Quantiles over all samples; null where that share never loses stability.
     pub quantiles: Vec<CriticalQuantile>,
+    /// Every change of stability along the input, in order.
+    pub crossings: Vec<CrossingReport>,
+}
+
+/// A change of stability along an input, of the samples in which the same mode decides it in the same way.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CrossingReport {
+    /// Number of the change, from 1, from the lower bound of the input upwards.
+    pub order: u32,
+    /// `lost` or `regained`: what happens to stability as the input grows.
+    pub stability: &'static str,
+    /// What decides on the unstable side: a mode, or a real eigenvalue that belongs to none.
+    pub mode: String,
+    /// `flutter` or `divergence`.
+    pub kind: &'static str,
+    /// Share of all samples.
+    pub share: f64,
+    /// Mean value of the input there.
+    pub mean: f64,
+    /// Smallest value.
+    pub minimum: f64,
+    /// Largest value.
+    pub maximum: f64,
+    /// Quantiles over these crossings.
+    pub quantiles: Vec<CriticalQuantile>,
+}
+
+impl CrossingReport {
+    fn new(crossing: &Crossing, samples: u64) -> Self {
+        let quantile = |level| CriticalQuantile { level, value: Some(crossing.quantile(level)) };
+        Self {
+            order: crossing.order,
+            stability: if crossing.loses { "lost" } else { "regained" },
+            mode: match crossing.label {
+                Label::Mode(mode) | Label::Second(mode) => mode.to_string(),
+                label @ Label::Real(_) => label.growth_rate(),
+            },
+            kind: crossing.verdict.name(),
+            share: crossing.samples as f64 / samples as f64,
+            mean: crossing.mean,
+            minimum: crossing.range[0],
+            maximum: crossing.range[1],
+            quantiles: CRITICAL_LEVELS.map(quantile).to_vec(),
+        }
+    }
+}
+
+/// All crossings; nothing if each sample loses stability once, in the same way.
+fn crossings_table(crossings: &[CrossingReport]) -> Option<Table> {
+    let is_plain = crossings.iter().all(|crossing| crossing.order == 1 && crossing.stability == "lost");
+    if is_plain && crossings.len() < 2 {
+        return None;
+    }
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("crossing", Align::Left),
+        ("stability", Align::Left),
+        ("mode", Align::Left),
+        ("kind", Align::Left),
+        ("share", right),
+        ("mean", right),
+        ("minimum", right),
+        ("maximum", right),
+    ]);
+    for crossing in crossings {
+        let values = [crossing.mean, crossing.minimum, crossing.maximum].map(|value| significant(value, 5));
+        let words = [
+            crossing.order.to_string(),
+            crossing.stability.to_owned(),
+            crossing.mode.clone(),
+            crossing.kind.to_owned(),
+            format!("{:.3} %", 100.0 * crossing.share),
+        ];
+        table.row(words.into_iter().chain(values));
+    }
+    Some(table)
 }
 
 /// One quantile of the critical value.
@@ -143,6 +220,7 @@ impl CriticalReport {
             minimum: found.minimum(),
             maximum: found.maximum(),
             quantiles: CRITICAL_LEVELS.map(quantile).to_vec(),
+            crossings: found.crossings().iter().map(|crossing| CrossingReport::new(crossing, found.samples)).collect(),
         }
     }
 }
@@ -163,6 +241,10 @@ impl fmt::Display for CriticalReport {
         let mut row = vec![self.input.clone()];
         row.extend(self.quantiles.iter().map(|quantile| value(quantile.value)));
         table.row(row);
-        write!(f, "{table}")
+        write!(f, "{table}")?;
+        match crossings_table(&self.crossings) {
+            Some(crossings) => write!(f, "\n{crossings}"),
+            None => Ok(()),
+        }
     }
 }

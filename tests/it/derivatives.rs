@@ -6,7 +6,7 @@ use nalgebra::{Complex, DMatrix};
 use pcc_compile::mechanics::model::{CLUTCH_PARAMETERS, Clutch, Model, SecondOrder};
 use pcc_compile::mechanics::spectrum::{ReducedSystem, Spectrum};
 use pcc_compile::numerics::eigenvalues::SchurForm;
-use pcc_evaluate::components::{Component, Output, OutputKind};
+use pcc_evaluate::components::OutputKind;
 
 /// Closed forms of the same derivative differ by a few roundings.
 const SYMBOLIC: f64 = 1e-13;
@@ -26,24 +26,13 @@ fn rows(file: &str) -> Vec<(String, Vec<f64>)> {
     text.lines().skip(1).map(row).collect()
 }
 
-/// A group of modes as a surrogate carries it.
-fn output(modes: &[usize]) -> Output {
-    let component = |id| Component { id, name: String::new(), center: 0.0, scale: 1.0 };
-    Output {
-        kind: OutputKind::Cluster,
-        modes: modes.to_vec(),
-        name: String::new(),
-        unit: "1/s".to_owned(),
-        components: (0..2 * modes.len()).map(component).collect(),
-    }
-}
-
 /// The derivatives of a group's components: one list of complex parts per input.
 fn slopes(state_matrix: DMatrix<f64>, derivatives: &[DMatrix<f64>], modes: &[usize]) -> Vec<Vec<Complex<f64>>> {
     let schur = SchurForm::new(state_matrix).unwrap();
     let spectrum = Spectrum::new(&schur.eigenvalues()).unwrap();
-    let system = ReducedSystem::new(&schur, derivatives, &spectrum, modes).unwrap();
-    let found = system.differentiate(&output(modes)).unwrap();
+    let lambdas: Vec<Complex<f64>> = modes.iter().map(|&mode| spectrum.mode(mode).unwrap()).collect();
+    let system = ReducedSystem::new(&schur, derivatives, &lambdas).unwrap();
+    let found = system.differentiate(OutputKind::Cluster, &lambdas).unwrap();
     found.iter().map(|parts| parts.chunks(2).map(|part| Complex::new(part[0], part[1])).collect()).collect()
 }
 

@@ -60,7 +60,7 @@ fn known_counts_of_a_shipped_surrogate() {
     insta::assert_snapshot!(format!(
         "stable {}, unstable modes {:?}",
         summary.stable,
-        summary.modes.iter().map(|mode| mode.unstable).collect::<Vec<_>>()
+        summary.eigenvalues.iter().map(|mode| mode.unstable).collect::<Vec<_>>()
     ));
 }
 

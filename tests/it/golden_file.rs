@@ -96,9 +96,26 @@ fn inputs(b: &mut B) -> Value {
     b.fields(&[("inputs", &|b| b.list(input)), ("dependence", &|b| b.kind(&["independent"]))])
 }
 
+/// Section 3 in version 2.
+fn outputs_2(b: &mut B) -> Value {
+    let output = |b: &mut B| {
+        b.fields(&[
+            ("kind", &|b| b.kind(&["eigenvalue", "cluster", "scalar", "closed"])),
+            ("modes", &|b| b.list(u32_number)),
+            ("reals", &|b| b.list(u32_number)),
+            ("name", &B::text),
+            ("unit", &B::text),
+            ("components", &|b| b.list(component)),
+        ])
+    };
+    b.fields(&[("outputs", &|b| b.list(output))])
+}
+
+fn component(b: &mut B) -> Value {
+    b.fields(&[("id", &u32_number), ("name", &B::text), ("center", &B::float), ("scale", &B::float)])
+}
+
 fn outputs(b: &mut B) -> Value {
-    let component =
-        |b: &mut B| b.fields(&[("id", &u32_number), ("name", &B::text), ("center", &B::float), ("scale", &B::float)]);
     let output = |b: &mut B| {
         b.fields(&[
             ("kind", &|b| b.kind(&["eigenvalue", "cluster", "scalar"])),
@@ -179,10 +196,9 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
-#[test]
-fn a_reader_written_from_the_layout_alone_finds_what_json_says() {
-    let file = std::fs::read(crate::support::repository("tests/data/golden.v1.pcc")).unwrap();
-    let mut b = Bytes { bytes: file.clone(), at: 0 };
+/// The document that a file holds, read by hand.
+fn document(file: &[u8]) -> Value {
+    let mut b = Bytes { bytes: file.to_vec(), at: 0 };
     assert_eq!(b.take::<8>(), [0x89, b'P', b'C', b'C', 0x0D, 0x0A, 0x1A, 0x0A]);
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
@@ -198,17 +214,38 @@ fn a_reader_written_from_the_layout_alone_finds_what_json_says() {
         ("self_test", &self_test),
     ];
     for (position, (name, read)) in sections.into_iter().enumerate() {
-        assert_eq!([b.u16(), b.u16(), b.u16(), b.u16()], [position as u16 + 1, 1, 1, 0], "header of {name}");
+        let [kind, version, flags, reserved] = [b.u16(), b.u16(), b.u16(), b.u16()];
+        assert_eq!([kind, flags, reserved], [position as u16 + 1, 1, 0], "header of {name}");
         let length = b.u64() as usize;
         let before = b.at;
-        document[name] = read(&mut b);
+        document[name] = match (name, version) {
+            ("outputs", 2) => outputs_2(&mut b),
+            (_, 1) => read(&mut b),
+            _ => panic!("{name} has version {version}"),
+        };
         assert_eq!(b.at - before, length, "length of {name}");
     }
     assert_eq!(b.u32(), crc32(&file[..file.len() - 4]));
     assert_eq!(b.at, file.len(), "no trailing bytes");
+    document
+}
 
+#[test]
+fn a_reader_written_from_the_layout_alone_finds_what_json_says() {
+    let file = std::fs::read(crate::support::repository("tests/data/golden.v1.pcc")).unwrap();
     let expected: Value = serde_json::from_str(&crate::support::text("tests/data/golden.v1.json")).unwrap();
-    assert_eq!(document, expected);
+    assert_eq!(document(&file), expected);
+}
+
+#[test]
+fn it_reads_groups_that_are_closed_under_conjugation() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::field::built("bike");
+    let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(&surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    assert_eq!(found["format"]["minor"], 3);
+    assert!(found["outputs"]["outputs"].as_array().unwrap().iter().any(|output| output["kind"] == "closed"));
 }
 
 #[test]

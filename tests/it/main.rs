@@ -9,6 +9,7 @@ mod command_line;
 mod derivatives;
 mod determinism;
 mod evaluation;
+mod field;
 mod full_expansions;
 mod golden_file;
 mod gradient_fits;

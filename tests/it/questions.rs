@@ -209,7 +209,7 @@ fn bad_parts_are_refused_by_name() {
     let bytes = fs::read(folder.path().join("1.part")).unwrap();
     fs::write(folder.path().join("cut.part"), &bytes[..bytes.len() / 2]).unwrap();
     let text = String::from_utf8(bytes.clone()).unwrap();
-    fs::write(folder.path().join("newer.part"), text.replacen("\"pcc_part\":1", "\"pcc_part\":2", 1)).unwrap();
+    fs::write(folder.path().join("newer.part"), text.replacen("\"pcc_part\":2", "\"pcc_part\":3", 1)).unwrap();
     let mut changed = bytes;
     let last = changed.len() - 10;
     changed[last] = b'7';

@@ -7,8 +7,8 @@ use crate::cli::shared_options::{RecordingOptions, SamplingOptions};
 use crate::cli::{Context, Ending, about};
 use crate::report::EvalReport;
 use clap::Args;
-use pcc_compile::campaign::{Campaign, Runner};
-use pcc_compile::reference::monte_carlo;
+use pcc_compile::campaign::Campaign;
+use pcc_compile::reference::{PointReference, monte_carlo};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -58,12 +58,12 @@ fn at_points(
     out: &Path,
     extrapolate: bool,
 ) -> anyhow::Result<PointsReport> {
-    let mut runner = Runner::new(campaign)?;
+    let mut reference = PointReference::new(campaign)?;
     let file = PointsFile::open(points, &campaign.study.inputs, extrapolate)?;
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
-        let runs = runner.run(group, &context.terminal).map_err(|error| about(&source, error))?;
-        let results = runs.into_iter().map(|run| (run.eigenvalues, run.spectrum.max_re())).collect();
-        Ok(Evaluated { modes: runner.modes().to_vec(), results })
+        let answers = reference.run(group, &context.terminal).map_err(|error| about(&source, error))?;
+        let results = answers.into_iter().map(|answer| (answer.eigenvalues, answer.top)).collect();
+        Ok(Evaluated { labels: reference.labels().to_vec(), results })
     })?;
     Ok(PointsReport { points: count, stable_points: stable, file: out.display().to_string() })
 }

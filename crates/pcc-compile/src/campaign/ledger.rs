@@ -240,7 +240,7 @@ impl Ledger {
 fn rank(outcome: &RunOutcome) -> u8 {
     match outcome {
         RunOutcome::Failed { .. } => 0,
-        RunOutcome::Answered(computation) => 1 + u8::from(computation.reduction.is_some()),
+        RunOutcome::Answered(computation) => 1 + u8::from(computation.reductions.is_some()),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::ledger::{DesignPoint, bits};
 use crate::campaign::journal::{HASH_BYTES, Record, RunOutcome};
 use crate::mechanics::model::command::results_table::ResultRow;
-use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError};
+use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError, Target};
 use crate::study::Study;
 use nalgebra::Complex;
 use std::collections::HashMap;
@@ -135,7 +135,7 @@ pub fn match_answers(
                     problems.push(RowProblem::Spectrum { line, run, cause });
                     continue;
                 }
-                RunOutcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reduction: None })
+                RunOutcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reductions: None })
             }
             Err(cause) => RunOutcome::Failed { attempts: 1, cause: cause.clone(), by_circumstances: false },
         };
@@ -191,7 +191,11 @@ fn find(
 /// Whether the study's modes are among these eigenvalues.
 fn usable(study: &Study, eigenvalues: &[Complex<f64>]) -> Result<(), SpectrumError> {
     let spectrum = Spectrum::new(eigenvalues)?;
-    study.spectrum.modes.ranks(spectrum.count()).map(drop)
+    match study.spectrum.target {
+        Target::Eigenvalues => study.spectrum.modes.ranks(spectrum.count()).map(drop),
+        // Which eigenvalues are modes is known once all answers are there.
+        Target::Invariants => Ok(()),
+    }
 }
 
 fn is_close(study: &Study, found: &[f64], expected: &[f64]) -> bool {

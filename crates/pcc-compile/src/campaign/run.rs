@@ -3,7 +3,7 @@
 use super::ledger::{Campaign, Ledger};
 use crate::campaign::journal::{JournalError, RunOutcome};
 use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
-use crate::mechanics::spectrum::{Computation, ReducedSystem, Reduction, Spectrum, SpectrumError};
+use crate::mechanics::spectrum::{Computation, Reductions, Spectrum, SpectrumError};
 use crate::numerics::eigenvalues::SchurForm;
 use crate::study::Study;
 use nalgebra::Complex;
@@ -36,7 +36,7 @@ pub enum RunError {
     /// Two runs found different numbers of oscillating modes, so ranks do not name the same modes.
     #[error(
         "{first_count} modes oscillate at {first_point}, but {count} at {point}; modes cannot be numbered by frequency \
-         over this input space: narrow the inputs"
+         over this input space: use spectrum.target = \"invariants\" with fit.method = \"auto\", or narrow the inputs"
     )]
     ModeCount {
         /// A first point.
@@ -46,6 +46,21 @@ pub enum RunError {
         /// A second point.
         point: String,
         /// Number of oscillating modes there.
+        count: usize,
+    },
+    /// Two runs have different numbers of eigenvalues, so that they cannot be followed.
+    #[error(
+        "the model has {first_count} eigenvalues at {first_point}, but {count} at {point}, conjugates counted; give all of them \
+         at every point"
+    )]
+    EigenvalueCount {
+        /// A first point.
+        first_point: String,
+        /// Number of eigenvalues there.
+        first_count: usize,
+        /// A second point.
+        point: String,
+        /// Number of eigenvalues there.
         count: usize,
     },
     /// Answers are missing, and the model is not to be run.
@@ -68,28 +83,29 @@ pub enum RunError {
 /// One direct computation, seen as a study asks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// All modes.
+    /// All eigenvalues.
     pub spectrum: Spectrum,
-    /// Eigenvalues of the study's modes.
+    /// Eigenvalues of the study's modes by frequency rank; of a [`Runner`] that does not rank modes none.
     pub eigenvalues: Vec<Complex<f64>>,
-    /// The system with its derivatives, as the study's modes see it: if derivatives were asked for and the modes can be
-    /// separated from the rest of the spectrum.
-    pub reduced: Option<ReducedSystem>,
+    /// The system with its derivatives, if they were asked for.
+    pub reductions: Option<Reductions>,
 }
 
-/// Runs the model of a study, and sees to it that all points have the same number of oscillating modes.
+/// Runs the model of a study. Unless it is told otherwise, modes have frequency ranks, and it sees to it that all
+/// points have the same number of them.
 pub struct Runner<'a> {
     study: &'a Study,
     ledger: Option<&'a Ledger>,
     model: Box<dyn Model>,
     with_derivatives: bool,
-    /// The first point, and how many modes oscillate there.
+    ranks_modes: bool,
+    /// The first point, and how many modes oscillate there, or how many eigenvalues there are.
     first: Option<(Vec<f64>, usize)>,
     modes: Vec<usize>,
 }
 
-/// What is kept of a run until all are there: its spectrum, and the system on the study's modes.
-type RunSpectrum = (Spectrum, Option<ReducedSystem>);
+/// What is kept of a run until all are there: its spectrum, and the reduced systems.
+type RunSpectrum = (Spectrum, Option<Reductions>);
 
 /// A run that counts: it answered, or it failed and is skipped, for this cause.
 type Settled = Result<RunSpectrum, String>;
@@ -108,13 +124,24 @@ impl<'a> Runner<'a> {
     /// Runs `model` in place of the study's.
     pub fn of(campaign: impl Into<Campaign<'a>>, model: Box<dyn Model>) -> Self {
         let Campaign { study, ledger } = campaign.into();
-        Self { study, ledger, model, with_derivatives: false, first: None, modes: Vec::new() }
+        Self { study, ledger, model, with_derivatives: false, ranks_modes: true, first: None, modes: Vec::new() }
+    }
+
+    /// Whether the model has derivatives.
+    pub fn model_has_derivatives(&self) -> bool {
+        self.model.has_derivatives()
     }
 
     /// Asks the model for derivatives, too, if it has them.
     #[must_use]
     pub fn with_derivatives(self, wanted: bool) -> Self {
         Self { with_derivatives: wanted && self.model.has_derivatives(), ..self }
+    }
+
+    /// Leaves it open which eigenvalue is which mode: any number of them may oscillate.
+    #[must_use]
+    pub fn without_ranks(self) -> Self {
+        Self { ranks_modes: false, ..self }
     }
 
     /// Whether runs come with derivatives.
@@ -158,18 +185,18 @@ impl<'a> Runner<'a> {
         // Answers that others gave are wrong before the last one is there.
         for (point, known) in points.iter().zip(&known) {
             if let Some(Ok((spectrum, _))) = known {
-                self.check_mode_count(point, spectrum.count())?;
+                self.check_count(point, spectrum)?;
             }
         }
         let answers = self.fill_in(points, known, skips, observer)?;
-        // Every point first: where the number of modes changes, a missing mode is the lesser news.
+        // Every point first: where their number changes, a missing mode is the lesser news.
         for (point, answer) in points.iter().zip(&answers) {
             if let Some((spectrum, _)) = answer {
-                self.check_mode_count(point, spectrum.count())?;
+                self.check_count(point, spectrum)?;
             }
         }
         let select = |(point, answer): (&Vec<f64>, Option<RunSpectrum>)| {
-            answer.map(|(spectrum, reduced)| self.select(point, spectrum, reduced)).transpose()
+            answer.map(|(spectrum, reductions)| self.select(point, spectrum, reductions)).transpose()
         };
         points.iter().zip(answers).map(select).collect()
     }
@@ -223,13 +250,14 @@ impl<'a> Runner<'a> {
 
     /// Whether a recorded answer has the derivatives that are wanted, for the modes that are wanted.
     fn suffices(&self, computation: &Computation) -> bool {
-        let modes = || {
-            let spectrum = Spectrum::new(&computation.eigenvalues).ok()?;
-            self.study.spectrum.modes.ranks(spectrum.count()).ok()
-        };
-        let has_them = |modes: &Vec<usize>| computation.reduction.as_ref().is_some_and(|found| found.modes() == modes);
-        // Without the modes there is nothing to reduce to; that is reported later.
-        !self.with_derivatives || modes().as_ref().is_none_or(has_them)
+        let has_them = |modes: Vec<usize>| computation.reductions.as_ref().is_some_and(|found| found.modes == modes);
+        !self.with_derivatives || has_them(self.modes_of_interest(&computation.eigenvalues))
+    }
+
+    /// Frequency ranks of the modes that the study asks for, as far as they oscillate.
+    fn modes_of_interest(&self, eigenvalues: &[Complex<f64>]) -> Vec<usize> {
+        let count = Spectrum::new(eigenvalues).map_or(0, |spectrum| spectrum.count());
+        self.study.spectrum.modes.up_to(count)
     }
 
     /// The model at points that the ledger does not know.
@@ -278,7 +306,7 @@ impl<'a> Runner<'a> {
             .into_iter()
             .zip(&points)
             .map(|(result, point)| {
-                let computation = result.map(|eigenvalues| Computation { eigenvalues, reduction: None });
+                let computation = result.map(|eigenvalues| Computation { eigenvalues, reductions: None });
                 self.record(point, computation, each, false, skips, observer)
             })
             .collect();
@@ -321,20 +349,16 @@ impl<'a> Runner<'a> {
 
     /// The answer as the study sees it.
     fn see(&self, point: &[f64], computation: Computation) -> Result<RunSpectrum, RunError> {
-        let Computation { eigenvalues, reduction } = computation;
+        let Computation { eigenvalues, reductions } = computation;
         let spectrum = Spectrum::new(&eigenvalues)
             .map_err(|cause| RunError::Spectrum { point: self.study.inputs.describe(point), cause })?;
-        let reduced = match reduction {
-            Some(Reduction::Reduced(system)) if self.with_derivatives => Some(system),
-            _ => None,
-        };
-        Ok((spectrum, reduced))
+        Ok((spectrum, reductions.filter(|_| self.with_derivatives)))
     }
 
     fn direct_computation(&self, point: &[f64]) -> Result<Computation, ModelError> {
         let linearization = if self.with_derivatives { self.model.linearization(point)? } else { None };
         let Some(Linearization { state_matrix, derivatives }) = linearization else {
-            return Ok(Computation { eigenvalues: self.model.eigenvalues(point)?, reduction: None });
+            return Ok(Computation { eigenvalues: self.model.eigenvalues(point)?, reductions: None });
         };
         let expected = self.study.inputs.dimension();
         let found = derivatives.iter().filter(|derivative| derivative.shape() == state_matrix.shape()).count();
@@ -343,36 +367,37 @@ impl<'a> Runner<'a> {
         }
         let schur = SchurForm::new(state_matrix)?;
         let eigenvalues = schur.eigenvalues();
-        // What is wrong with a spectrum or its modes is reported once all runs are there.
-        let reduce = |spectrum: Spectrum| {
-            let modes = self.study.spectrum.modes.ranks(spectrum.count()).ok()?;
-            let reduced = ReducedSystem::new(&schur, &derivatives, &spectrum, &modes);
-            Some(reduced.map_or(Reduction::Inseparable(modes), Reduction::Reduced))
-        };
-        let reduction = Spectrum::new(&eigenvalues).ok().and_then(reduce);
-        Ok(Computation { eigenvalues, reduction })
+        let reductions = Some(Reductions::new(&schur, &derivatives, self.modes_of_interest(&eigenvalues)));
+        Ok(Computation { eigenvalues, reductions })
     }
 
-    fn check_mode_count(&mut self, point: &[f64], count: usize) -> Result<(), RunError> {
+    /// Modes with ranks must be as many at every point, and eigenvalues that are followed, too.
+    fn check_count(&mut self, point: &[f64], spectrum: &Spectrum) -> Result<(), RunError> {
         let inputs = &self.study.inputs;
+        let count = match self.ranks_modes {
+            true => spectrum.count(),
+            false => spectrum.eigenvalues().len() + spectrum.rigid_body_modes(),
+        };
         let (first_point, first_count) = self.first.get_or_insert_with(|| (point.to_vec(), count));
         if *first_count == count {
             return Ok(());
         }
-        Err(RunError::ModeCount {
-            first_point: inputs.describe(first_point),
-            first_count: *first_count,
-            point: inputs.describe(point),
-            count,
+        let (first_point, first_count, point) = (inputs.describe(first_point), *first_count, inputs.describe(point));
+        Err(match self.ranks_modes {
+            true => RunError::ModeCount { first_point, first_count, point, count },
+            false => RunError::EigenvalueCount { first_point, first_count, point, count },
         })
     }
 
     /// What the study asks of a spectrum.
-    fn select(&mut self, point: &[f64], spectrum: Spectrum, reduced: Option<ReducedSystem>) -> Result<Run, RunError> {
+    fn select(&mut self, point: &[f64], spectrum: Spectrum, reductions: Option<Reductions>) -> Result<Run, RunError> {
+        if !self.ranks_modes {
+            return Ok(Run { eigenvalues: Vec::new(), spectrum, reductions });
+        }
         let Study { inputs, spectrum: settings, .. } = self.study;
         let unusable = |cause| RunError::Spectrum { point: inputs.describe(point), cause };
         self.modes = settings.modes.ranks(spectrum.count()).map_err(unusable)?;
         let eigenvalues = self.modes.iter().map(|&mode| spectrum.mode(mode)).collect::<Result<_, _>>();
-        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum, reduced })
+        Ok(Run { eigenvalues: eigenvalues.map_err(unusable)?, spectrum, reductions })
     }
 }

@@ -64,7 +64,7 @@ const ROUNDING_MARGIN: f64 = 1.001;
 const SIGNIFICANT: f64 = 4.0;
 
 /// The points are the same for all surrogates of a dimension and seed: numbers of a design's stream that no level has.
-const FIRST_INDEX: u64 = 1 << 40;
+pub(super) const FIRST_INDEX: u64 = 1 << 40;
 
 /// What the judgement of one level leaves for the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -247,7 +247,7 @@ impl<'a> Judge<'a> {
             }
             Ok(evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>()))
         })?;
-        let mut block = Block::with_capacity(surrogate.component_count(), surrogate.modes().len(), POINTS);
+        let mut block = Block::with_capacity(surrogate.component_count(), surrogate.labels().len(), POINTS);
         for part in parts {
             block.append(part);
         }

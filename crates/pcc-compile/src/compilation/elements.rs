@@ -134,7 +134,8 @@ impl<'a> Elements<'a> {
 
     fn project(&mut self, element: usize) -> Result<(), BuildError> {
         let values = self.values(element)?;
-        let resolutions = super::evaluations::resolutions(&self.outputs, &self.runs[element]);
+        let of_output = |output: &Output| super::group_fits::resolutions(output, &self.runs[element]);
+        let resolutions: Vec<f64> = self.outputs.iter().flat_map(of_output).collect();
         let projections = project(&self.grid, &self.recurrences, &self.indices, &values, &resolutions, self.observer)?;
         if let FitMethod::MultiElement(settings) = &self.study.fit.method {
             let weight = self.mesh.elements()[element].weight;
@@ -211,7 +212,8 @@ impl<'a> Elements<'a> {
         for element in 0..self.runs.len() {
             values.iter_mut().zip(self.values(element)?).for_each(|(all, part)| all.extend(part));
         }
-        let resolutions = super::evaluations::resolutions(&self.outputs, self.runs.iter().flatten());
+        let of_output = |output: &Output| super::group_fits::resolutions(output, self.runs.iter().flatten());
+        let resolutions = self.outputs.iter().flat_map(of_output);
         // Zero for components that do not vary over all elements.
         let variance = |(values, resolution): (&Vec<f64>, f64)| {
             Some(weighted_variance(values, &weights))

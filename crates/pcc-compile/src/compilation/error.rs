@@ -25,6 +25,18 @@ pub enum BuildError {
         #[source]
         cause: ClusterError,
     },
+    /// A list of modes has some of a group, but not all.
+    #[error(
+        "spectrum.modes = {listed:?} splits a group: modes {group:?} are known well only together; use modes = {smallest:?}"
+    )]
+    SplitGroup {
+        /// The list.
+        listed: Vec<usize>,
+        /// Numbers of the modes of the group.
+        group: Vec<usize>,
+        /// The smallest list that has all of its groups.
+        smallest: Vec<usize>,
+    },
     /// The study asks for derivatives, which the model does not have.
     #[error("fit.derivatives: the model has no derivatives; remove the key or set it to \"auto\" or false")]
     NoDerivatives,

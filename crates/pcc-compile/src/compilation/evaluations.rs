@@ -1,22 +1,24 @@
 //! The design points and what the model answered there.
 
 use super::BuildError;
+use super::group_fits::{gradients, resolutions};
 use crate::campaign::{Campaign, Failure, Run, RunError, Runner};
 use crate::fitting::design::{NestedLatinHypercube, Samples};
 use crate::fitting::regression::{Gradients, Response};
 use crate::mechanics::model::Model;
-use crate::mechanics::spectrum::{ClusterError, Spectrum, SpectrumError, components as components_of};
+use crate::mechanics::spectrum::{
+    ClusterError, Groups, Labels, Spectrum, SpectrumError, Vectors, components as components_at,
+};
 use crate::study::{Derivatives, DesignKind, Study};
+use nalgebra::Complex;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
-
-/// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
-const SOLVER_ACCURACY: f64 = 1e-13;
 
 /// Fewer runs say nothing of how a component varies.
 const LEAST_RUNS: usize = 2;
 
 /// What a fit needs of a design and the answers there.
+#[derive(Debug)]
 pub(super) struct Level {
     /// The points whose runs answered, in standardized coordinates.
     pub samples: Samples,
@@ -27,7 +29,7 @@ pub(super) struct Level {
     /// Per component its derivatives, if the runs come with any.
     pub gradients: Option<Vec<Gradients>>,
     /// Per component, differences up to this size are rounding of the eigenvalue solver.
-    resolutions: Vec<f64>,
+    pub resolutions: Vec<f64>,
 }
 
 impl Level {
@@ -41,9 +43,9 @@ impl Level {
     }
 }
 
-/// The modes of each output.
-pub(super) fn groups(outputs: &[Output]) -> Vec<&[usize]> {
-    outputs.iter().map(|output| output.modes.as_slice()).collect()
+/// The modes and real eigenvalues of each output.
+pub(super) fn groups(outputs: &[Output]) -> Vec<(&[usize], &[usize])> {
+    outputs.iter().map(|output| (output.modes.as_slice(), output.reals.as_slice())).collect()
 }
 
 /// A growing design with one model run per point. No point is run twice. Points whose runs failed, if the study skips
@@ -56,12 +58,17 @@ pub(super) struct Evaluations<'a> {
     /// For each sample, its point of the design.
     answered: Vec<usize>,
     runs: Vec<Run>,
+    /// The run nearest the middle of the inputs on the first level: where labels get their names.
+    root: Option<usize>,
 }
 
 impl<'a> Evaluations<'a> {
-    pub fn new(campaign: Campaign<'a>, model: Box<dyn Model>) -> Result<Self, BuildError> {
+    /// With `ranks`, modes have frequency ranks and must be as many at every point; else eigenvalues are followed.
+    pub fn new(campaign: Campaign<'a>, model: Box<dyn Model>, ranks: bool) -> Result<Self, BuildError> {
         let study = campaign.study;
-        if study.fit.derivatives == Derivatives::Always && !model.has_derivatives() {
+        let runner = Runner::of(campaign, model);
+        let has_derivatives = runner.model_has_derivatives();
+        if study.fit.derivatives == Derivatives::Always && !has_derivatives {
             return Err(BuildError::NoDerivatives);
         }
         Ok(Self {
@@ -74,28 +81,80 @@ impl<'a> Evaluations<'a> {
                     NestedLatinHypercube::spread_out(study.inputs.dimension(), study.seed)
                 }
             },
-            runner: Runner::of(campaign, model).with_derivatives(study.uses_derivatives()),
+            runner: if ranks { runner } else { runner.without_ranks() }.with_derivatives(study.uses_derivatives()),
             answered: Vec::new(),
             runs: Vec::new(),
+            root: None,
         })
     }
 
-    /// Grows the design, runs the model at its new points, and says what a fit needs of all points.
+    /// Grows the design and runs the model at its new points.
     ///
     /// # Errors
     ///
-    /// [`BuildError`] if a run fails that the study does not skip, if too many fail, or if modes cannot be grouped.
-    pub fn grow_to(&mut self, size: usize, observer: &dyn Observer) -> Result<Level, BuildError> {
+    /// [`BuildError`] if a run fails that the study does not skip, or if too many fail.
+    pub fn grow_to(&mut self, size: usize, observer: &dyn Observer) -> Result<(), BuildError> {
         self.run(size, observer)?;
-        self.check_failures()?;
+        self.check_failures()
+    }
+
+    /// What a fit needs of all points, with modes by frequency rank.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError`] if modes cannot be grouped.
+    pub fn by_rank(&self) -> Result<Level, BuildError> {
         let outputs = self.outputs()?;
         Ok(Level {
             samples: self.samples(),
             values: self.components(&outputs)?,
             gradients: self.gradients(&outputs),
-            resolutions: resolutions(&outputs, &self.runs),
+            resolutions: outputs.iter().flat_map(|output| resolutions(output, &self.runs)).collect(),
             outputs,
         })
+    }
+
+    /// Follows all eigenvalues over the design: their labels and finest groups. Rigid-body motion is as many
+    /// eigenvalues as are negligible at every run, since a slow one may be so at some.
+    ///
+    /// # Errors
+    ///
+    /// [`RunError::EigenvalueCount`] if runs have different numbers of eigenvalues.
+    pub fn follow(&mut self) -> Result<(Labels, Groups), BuildError> {
+        let rigid = self.runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
+        for run in &mut self.runs {
+            if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(rigid) {
+                run.spectrum = spectrum;
+            }
+        }
+        let samples = self.samples();
+        let describe = |i: usize| self.study.inputs.describe(&self.study.inputs.physical(samples.point(i)));
+        let count = |run: &Run| run.spectrum.eigenvalues().len();
+        let first_count = self.runs.first().map_or(0, count);
+        if let Some(other) = self.runs.iter().position(|run| count(run) != first_count) {
+            let (first_point, point) = (describe(0), describe(other));
+            let count = count(&self.runs[other]);
+            return Err(RunError::EigenvalueCount { first_point, first_count, point, count }.into());
+        }
+        let points: Vec<&[f64]> = samples.points().collect();
+        let from_center = |run: &usize| points[*run].iter().map(|xi| xi * xi).sum::<f64>();
+        let nearest = || (0..points.len()).reduce(|a, b| if from_center(&b) < from_center(&a) { b } else { a });
+        let root = self.root.or_else(nearest).unwrap_or(0);
+        let spectra: Vec<&Spectrum> = self.runs.iter().map(|run| &run.spectrum).collect();
+        let vectors: Option<Vec<Vectors>> =
+            self.runs.iter().map(|run| run.reductions.as_ref()?.vectors(&run.spectrum)).collect();
+        let labels = match vectors {
+            Some(vectors) => Labels::following(&points, root, &vectors, &spectra),
+            None => Labels::by_modulus(&spectra),
+        };
+        let groups = Groups::new(&labels, &spectra);
+        self.root = Some(root);
+        Ok((labels, groups))
+    }
+
+    /// Whether runs come with derivatives.
+    pub fn has_derivatives(&self) -> bool {
+        self.runner.has_derivatives()
     }
 
     fn run(&mut self, size: usize, observer: &dyn Observer) -> Result<(), RunError> {
@@ -141,7 +200,7 @@ impl<'a> Evaluations<'a> {
     }
 
     /// The points whose runs answered, in standardized coordinates.
-    fn samples(&self) -> Samples {
+    pub fn samples(&self) -> Samples {
         let points = self.points();
         if self.failed() == 0 {
             return points;
@@ -174,32 +233,23 @@ impl<'a> Evaluations<'a> {
     }
 
     /// The derivatives of each component of `outputs`, by id, in standardized variables; `None` if the runs come
-    /// without. Runs in which an output's modes, or all modes of the study together, cannot be separated from the rest
-    /// of the spectrum have none for its components.
+    /// without. Runs in which an output's modes cannot be separated from the rest of the spectrum have none for its
+    /// components.
     fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
         if !self.runner.has_derivatives() {
             return None;
         }
-        let (samples, inputs) = (self.samples(), self.study.inputs.inputs());
-        let mut gradients = Vec::new();
-        for output in outputs {
-            let slopes = |(i, run): (usize, &Run)| Some((i, run.reduced.as_ref()?.differentiate(output)?));
+        let samples = self.samples();
+        let of_output = |output: &Output| {
+            let slopes = |(i, run): (usize, &Run)| {
+                let mode = |&mode: &usize| run.spectrum.mode(mode).ok();
+                let lambdas: Vec<Complex<f64>> = output.modes.iter().map(mode).collect::<Option<_>>()?;
+                Some((i, run.reductions.as_ref()?.differentiate(output.kind, &lambdas)?))
+            };
             let found: Vec<(usize, Vec<Vec<f64>>)> = self.runs.iter().enumerate().filter_map(slopes).collect();
-            for position in 0..output.components.len() {
-                // ∂y/∂ξ_j = ∂y/∂x_j · dx_j/dξ_j
-                let standardized = inputs.iter().enumerate().flat_map(|(j, input)| {
-                    let chained = |(i, by_input): &(usize, Vec<Vec<f64>>)| {
-                        by_input[j][position] * input.marginal.slope(samples.point(*i)[j])
-                    };
-                    found.iter().map(chained).collect::<Vec<f64>>()
-                });
-                gradients.push(Gradients {
-                    slopes: standardized.collect(),
-                    points: found.iter().map(|(i, _)| *i).collect(),
-                });
-            }
-        }
-        Some(gradients)
+            gradients(&found, output.components.len(), &samples, self.study)
+        };
+        Some(outputs.iter().flat_map(of_output).collect())
     }
 }
 
@@ -208,25 +258,10 @@ pub(super) fn component_values(outputs: &[Output], runs: &[Run]) -> Result<Vec<V
     let count = outputs.iter().map(|output| output.components.len()).sum();
     let mut components = vec![Vec::with_capacity(runs.len()); count];
     for (i, run) in runs.iter().enumerate() {
-        let values = components_of(outputs, &run.spectrum).map_err(|cause| (i, cause))?;
+        let values = components_at(outputs, &run.spectrum).map_err(|cause| (i, cause))?;
         components.iter_mut().zip(values).for_each(|(list, value)| list.push(value));
     }
     Ok(components)
-}
-
-/// Differences of each component of `outputs` up to this size are rounding of the eigenvalue solver in these runs.
-pub(super) fn resolutions<'a>(outputs: &[Output], runs: impl IntoIterator<Item = &'a Run>) -> Vec<f64> {
-    let largest = runs.into_iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
-    let mut resolutions = vec![0.0; outputs.iter().map(|output| output.components.len()).sum()];
-    for output in outputs {
-        for (position, component) in output.components.iter().enumerate() {
-            // A coefficient of degree j in distances from the mean has the scale Rʲ: it moves by j Rʲ⁻¹ per unit of λ.
-            let others = (position / 2) as f64;
-            let radius = component.scale.powf(1.0 / (others + 1.0));
-            resolutions[component.id] = SOLVER_ACCURACY * largest * (others + 1.0) * radius.powf(others);
-        }
-    }
-    resolutions
 }
 
 /// The position of the spectrum that shows why modes could not be grouped.

@@ -5,22 +5,31 @@ mod decision;
 mod elements;
 mod error;
 mod evaluations;
+mod group_fits;
+mod grouped;
+mod grouping;
+mod numbering;
+mod ranked;
 mod record;
 mod stopping;
 #[cfg(test)]
 mod tests;
 mod to_file;
+mod unseen;
 
 pub use error::BuildError;
 pub use to_file::{BuildFileError, BuiltFile, build_to_file};
 
 use crate::campaign::{Campaign, Ledger};
 use crate::mechanics::model::Model;
-use components::ComponentFit;
+use crate::mechanics::spectrum::Target;
+use components::{ComponentFit, ComponentResult};
 use decision::judge;
-use evaluations::{Evaluations, groups};
+use evaluations::{Evaluations, Level, groups};
+use grouped::GroupedEigenvalues;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::surrogate::Surrogate;
+use ranked::RankedModes;
 use stopping::StoppingRule;
 
 /// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool:
@@ -30,7 +39,8 @@ use stopping::StoppingRule;
 /// enter the fit beside the values if the study wants them and the model has them. All components share one nested
 /// design. Level by level it grows by one step until every component is fitted well enough and, if the study asks for
 /// it, the estimated error of the stability proportion is small enough, or has not fallen while the design grew by four
-/// levels to twice its size. Modes are grouped anew at each level; no model run is repeated or dropped.
+/// levels to twice its size. Eigenvalues are followed and grouped anew at each level; no model run is repeated or
+/// dropped.
 ///
 /// # Errors
 ///
@@ -76,31 +86,32 @@ pub fn build_with<'a>(
 /// everything fitted anew.
 fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
     let study = campaign.study;
-    let mut fit = ComponentFit::new(study)?;
-    let mut evaluations = Evaluations::new(campaign, model)?;
+    let mut fitting = Fitting::new(campaign)?;
+    let mut evaluations = Evaluations::new(campaign, model, matches!(fitting, Fitting::Ranked(_)))?;
     let mut stopping = StoppingRule::new(study);
     let (mut sizes, mut grouping, mut previous) = (Vec::new(), Vec::new(), None);
     let mut size = study.design.initial;
     loop {
         // Step 1: the design, and the model at its points.
         sizes.push(size as u64);
-        let level = evaluations.grow_to(size, observer)?;
-        // Step 2: a fit starts from nothing, and from what smaller designs have taught of the same components.
+        evaluations.grow_to(size, observer)?;
+        // Steps 2 and 3: what the components are, and their terms and coefficients.
+        let next = study.design.next_size(size).filter(|_| !study.fit.method.has_fixed_design());
+        let fitted = fitting.fit(&mut evaluations, next.is_some(), observer)?;
+        // Step 4: a design that is too small for the terms that matter grows.
+        let (level, fitted) = match (next, fitted) {
+            (Some(next), None) => {
+                size = next;
+                continue;
+            }
+            (None, None) => (evaluations.by_rank()?, Vec::new()),
+            (_, Some(fitted)) => fitted,
+        };
         if groups(&level.outputs) != groups(&grouping) {
-            fit.forget(&level.outputs);
             previous = None;
         }
         grouping.clone_from(&level.outputs);
-        // Step 3: the terms and coefficients of every component.
-        let next = study.design.next_size(size).filter(|_| !study.fit.method.has_fixed_design());
-        let fitted = fit.fit(&level.samples, &level.responses(), next.is_some(), observer)?;
-        // Step 4: a design that is too small for the terms that matter grows.
-        if let (Some(next), None) = (next, &fitted) {
-            size = next;
-            continue;
-        }
         // Step 5: enough, or the next level.
-        let fitted = fitted.unwrap_or_default();
         let mut surrogate = record::surrogate(study, &evaluations, &level, &fitted, &sizes);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let is_last = next.is_none() || stopping.needs_no_judgement(&results);
@@ -113,6 +124,38 @@ fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Obser
                 surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
                 return Ok(surrogate);
             }
+        }
+    }
+}
+
+/// How eigenvalues become components.
+enum Fitting<'a> {
+    /// Modes have frequency ranks.
+    Ranked(RankedModes<'a>),
+    /// Eigenvalues are followed, and grouped by prediction.
+    Grouped(GroupedEigenvalues<'a>),
+}
+
+impl<'a> Fitting<'a> {
+    fn new(campaign: Campaign<'a>) -> Result<Self, BuildError> {
+        let study = campaign.study;
+        let fit = ComponentFit::new(study)?;
+        let is_grouped = study.spectrum.target == Target::Invariants && study.fit.method.fits_every_design();
+        Ok(match is_grouped {
+            true => Self::Grouped(GroupedEigenvalues::new(study, fit)),
+            false => Self::Ranked(RankedModes::new(fit)),
+        })
+    }
+
+    fn fit(
+        &mut self,
+        evaluations: &mut Evaluations<'_>,
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<(Level, Vec<ComponentResult>)>, BuildError> {
+        match self {
+            Self::Ranked(modes) => modes.fit(evaluations, can_grow, observer),
+            Self::Grouped(eigenvalues) => eigenvalues.fit(evaluations, can_grow, observer),
         }
     }
 }

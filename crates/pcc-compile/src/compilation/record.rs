@@ -62,6 +62,13 @@ pub(super) fn surrogate(
     new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training)
 }
 
+/// A surrogate of one output alone, for trials.
+pub(super) fn of_fits(study: &Study, output: &Output, fitted: &[ComponentResult]) -> Surrogate {
+    let training = training(study, fitted, None, (0, 0), Vec::new());
+    let whole = Mesh::whole(study.inputs.dimension());
+    new(study, whole, vec![output.clone()], fitted.iter().map(|fit| &fit.result), training)
+}
+
 fn new<'a>(
     study: &Study,
     mesh: Mesh,

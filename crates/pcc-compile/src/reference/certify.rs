@@ -40,7 +40,7 @@ pub fn certify_with_model<'a>(
     }
     let plan = Plan::new(surrogate);
     let mut counts = DiscordantCounts { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
-    for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |_, points, found| {
+    for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
         for (run, &max_re) in found.iter().zip(&block.max_re) {
             let (model, predicted) = (run.spectrum.max_re() < 0.0, max_re < 0.0);

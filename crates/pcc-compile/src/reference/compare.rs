@@ -1,10 +1,11 @@
 //! A surrogate against its model on the same points.
 
 use super::direct_computations::{ReferenceError, check_problem, for_each_chunk, surrogate_block};
-use crate::campaign::{Campaign, Run};
-use crate::mechanics::spectrum::{SpectrumError, decompose};
+use super::matching::{Matching, by_output};
+use crate::campaign::Campaign;
+use crate::mechanics::spectrum::{Spectrum, components_of};
 use nalgebra::Complex;
-use pcc_evaluate::components::{Block, Component, Output, OutputKind};
+use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind};
 use pcc_evaluate::evaluation::Plan;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::probability::random::Purpose;
@@ -113,22 +114,12 @@ pub fn compare_with_model<'a>(
     check_problem(surrogate, study)?;
     let plan = Plan::new(surrogate);
     let mut comparison = Comparison::new(samples);
-    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |runner, points, runs| {
-        let mut modes = surrogate.modes();
-        modes.sort_unstable();
-        if modes != runner.modes() {
-            return Err(ReferenceError::other_problem(surrogate, study));
-        }
+    let matching = Matching::new(surrogate, study.spectrum.target);
+    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs| {
         let block = surrogate_block(surrogate, &plan, points)?;
         comparison.classify(runs.iter().map(|run| run.spectrum.max_re()), &block);
-        let at_point = |position: usize, i: usize| runs[i].eigenvalues[position];
-        let mut errors = mode_errors(runner.modes(), surrogate, runs.len(), at_point, &block);
-        let describe = |i: usize| study.inputs.describe(&study.inputs.physical(&points[i]));
-        errors.extend(
-            invariant_errors(surrogate, runs, &block)
-                .map_err(|(i, cause)| ReferenceError::Spectrum { point: describe(i), cause })?,
-        );
-        comparison.merge(errors);
+        let spectra: Vec<&Spectrum> = runs.iter().map(|run| &run.spectrum).collect();
+        comparison.merge(errors(surrogate, &matching, &spectra, &block));
         Ok(())
     })?;
     Ok(comparison)
@@ -173,55 +164,83 @@ impl Comparison {
 /// Real or imaginary part.
 type Part = fn(&Complex<f64>) -> f64;
 
-/// Re λ and Im λ of every mode at so many points; `lambda(position, i)` is the model's eigenvalue of the mode at this
-/// position of `modes`, at point i.
-pub(super) fn mode_errors(
-    modes: &[usize],
+/// Errors of every mode and real eigenvalue, in the order of their numbers, then of the components of groups, at the
+/// points where the model has as many eigenvalues as the surrogate.
+pub(super) fn errors(
     surrogate: &Surrogate,
-    points: usize,
-    lambda: impl Fn(usize, usize) -> Complex<f64>,
+    matching: &Matching,
+    spectra: &[&Spectrum],
     block: &Block,
 ) -> Vec<ComponentError> {
-    let parts: [(&str, Part); 2] = [("re", |lambda| lambda.re), ("im", |lambda| lambda.im)];
-    let order = surrogate.modes();
-    let mut errors = Vec::with_capacity(2 * modes.len());
-    for (at, mode) in modes.iter().enumerate() {
-        let Some(position) = order.iter().position(|other| other == mode) else { continue };
-        for (name, part) in parts {
-            let model: Vec<f64> = (0..points).map(|i| part(&lambda(at, i))).collect();
-            let found: Vec<f64> = block.eigenvalues[position].iter().map(part).collect();
-            errors.push(ComponentError {
-                name: format!("{name}_{mode}"),
-                model: Moments::of(&model),
-                surrogate: Moments::of(&found),
-                scale: 0.0,
-            });
-        }
-    }
+    let predicted = |i: usize| -> Vec<Complex<f64>> { block.eigenvalues.iter().map(|list| list[i]).collect() };
+    let found = |(i, spectrum): (usize, &&Spectrum)| Some((i, matching.find(&predicted(i), spectrum)?));
+    let matched: Vec<(usize, Vec<Complex<f64>>)> = spectra.iter().enumerate().filter_map(found).collect();
+    let mut errors = eigenvalue_errors(surrogate, &matched, block);
+    errors.extend(invariant_errors(surrogate, &matched, block));
     errors
 }
 
-/// The components of clusters, which are no eigenvalues themselves.
+/// Re λ and Im λ of every mode, then the real eigenvalues.
+fn eigenvalue_errors(
+    surrogate: &Surrogate,
+    matched: &[(usize, Vec<Complex<f64>>)],
+    block: &Block,
+) -> Vec<ComponentError> {
+    let mut labels: Vec<(usize, Label)> = surrogate.labels().into_iter().enumerate().collect();
+    labels.sort_by_key(|&(_, label)| match label {
+        Label::Mode(mode) => (mode, 0),
+        Label::Second(mode) => (mode, 1),
+        Label::Real(number) => (usize::MAX, number),
+    });
+    let of_label = |(position, label): (usize, Label)| {
+        let error = |name: String, part: Part| ComponentError {
+            name,
+            model: Moments::of(&matched.iter().map(|(_, lambdas)| part(&lambdas[position])).collect::<Vec<_>>()),
+            surrogate: Moments::of(
+                &matched.iter().map(|(i, _)| part(&block.eigenvalues[position][*i])).collect::<Vec<_>>(),
+            ),
+            scale: 0.0,
+        };
+        let growth_rate = error(label.growth_rate(), |lambda| lambda.re);
+        match label {
+            Label::Mode(mode) => vec![growth_rate, error(format!("im_{mode}"), |lambda| lambda.im)],
+            Label::Second(_) | Label::Real(_) => vec![growth_rate],
+        }
+    };
+    labels.into_iter().flat_map(of_label).collect()
+}
+
+/// The components of groups, which are no eigenvalues themselves.
 fn invariant_errors(
     surrogate: &Surrogate,
-    runs: &[Run],
+    matched: &[(usize, Vec<Complex<f64>>)],
     block: &Block,
-) -> Result<Vec<ComponentError>, (usize, SpectrumError)> {
-    let clusters: Vec<&Output> = surrogate.outputs.iter().filter(|output| output.kind == OutputKind::Cluster).collect();
-    let mut values = vec![Vec::with_capacity(runs.len()); surrogate.component_count()];
-    let mut at_run = vec![0.0; surrogate.component_count()];
-    for (i, run) in runs.iter().enumerate() {
-        for output in &clusters {
-            decompose(output, &run.spectrum, &mut at_run).map_err(|cause| (i, cause))?;
+) -> Vec<ComponentError> {
+    let is_own_eigenvalue = |output: &Output| output.components.len() == 1 || output.kind == OutputKind::Eigenvalue;
+    let mut values: Vec<Vec<f64>> = vec![Vec::with_capacity(matched.len()); surrogate.component_count()];
+    for (_, lambdas) in matched {
+        for (output, (kind, own)) in surrogate.outputs.iter().zip(by_output(surrogate, lambdas)) {
+            let components = components_of(kind, own);
+            // Eigenvalues that are not closed under conjugation have fewer factors.
+            for (k, component) in output.components.iter().enumerate() {
+                values[component.id].push(components.get(k).copied().unwrap_or(f64::NAN));
+            }
         }
-        values.iter_mut().zip(&at_run).for_each(|(list, &value)| list.push(value));
     }
-    let error = |component: &&Component| ComponentError {
-        name: component.name.clone(),
-        model: Moments::of(&values[component.id]),
-        surrogate: Moments::of(&block.components[component.id]),
-        scale: component.scale,
+    let error = |component: &Component| {
+        let both: (Vec<f64>, Vec<f64>) = values[component.id]
+            .iter()
+            .zip(matched)
+            .filter(|(value, _)| value.is_finite())
+            .map(|(&value, (i, _))| (value, block.components[component.id][*i]))
+            .unzip();
+        ComponentError {
+            name: component.name.clone(),
+            model: Moments::of(&both.0),
+            surrogate: Moments::of(&both.1),
+            scale: component.scale,
+        }
     };
-    let components: Vec<&Component> = clusters.iter().flat_map(|output| &output.components).collect();
-    Ok(components.iter().map(error).collect())
+    let groups = surrogate.outputs.iter().filter(|output| !is_own_eigenvalue(output));
+    groups.flat_map(|output| &output.components).map(error).collect()
 }

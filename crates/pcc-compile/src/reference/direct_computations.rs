@@ -2,8 +2,9 @@
 
 use crate::campaign::{Campaign, Run, RunError, Runner};
 use crate::mechanics::model::ModelError;
-use crate::mechanics::spectrum::{SpectrumError, Target};
+use crate::mechanics::spectrum::{Spectrum, Target};
 use crate::study::Study;
+use nalgebra::Complex;
 use pcc_evaluate::components::{Block, Output, Summary};
 use pcc_evaluate::evaluation::{EvalError, Plan, evaluate_points};
 use pcc_evaluate::foundation::Observer;
@@ -38,15 +39,6 @@ pub enum ReferenceError {
         surrogate: String,
         /// Hash of the study.
         study: String,
-    },
-    /// A mode of the surrogate is missing at a point.
-    #[error("{cause}; found at {point}")]
-    Spectrum {
-        /// Where: the inputs with their values.
-        point: String,
-        /// Why.
-        #[source]
-        cause: SpectrumError,
     },
     /// The surrogate could not be sampled.
     #[error(transparent)]
@@ -85,13 +77,15 @@ pub(super) fn for_each_chunk(
     seed: u64,
     purpose: Purpose,
     observer: &dyn Observer,
-    mut consume: impl FnMut(&Runner<'_>, &[Vec<f64>], &[Run]) -> Result<(), ReferenceError>,
+    mut consume: impl FnMut(&[Vec<f64>], &[Run]) -> Result<(), ReferenceError>,
 ) -> Result<(), ReferenceError> {
     if samples == 0 {
         return Err(ReferenceError::NoSamples);
     }
     let study = campaign.study;
-    let mut runner = Runner::new(campaign)?;
+    // Whether a system is stable takes no numbers of modes.
+    let mut runner = Runner::new(campaign)?.without_ranks();
+    let mut rigid_body_modes = usize::MAX;
     observer.begin("model runs", samples);
     for start in (0..samples).step_by(CHUNK as usize) {
         let standardized: Vec<Vec<f64>> = (start..samples.min(start + CHUNK))
@@ -102,8 +96,16 @@ pub(super) fn for_each_chunk(
             })
             .collect();
         let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
-        let runs = runner.run(&physical, observer)?;
-        consume(&runner, &standardized, &runs)?;
+        let mut runs = runner.run(&physical, observer)?;
+        // Rigid-body motion is negligible everywhere; a slow eigenvalue only where it passes zero.
+        let of_chunk = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
+        rigid_body_modes = of_chunk.min(rigid_body_modes);
+        for run in &mut runs {
+            if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(rigid_body_modes) {
+                run.spectrum = spectrum;
+            }
+        }
+        consume(&standardized, &runs)?;
     }
     observer.finish();
     Ok(())
@@ -128,7 +130,8 @@ pub(super) fn surrogate_block(
 /// What direct computations say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// Re λ and Im λ of every mode of the study.
+    /// Re λ and Im λ of every mode of the study, by frequency rank. None if their number changes from point to point,
+    /// or one that the study lists does not exist everywhere: shares need no numbers, statistics of modes do.
     pub outputs: Vec<Output>,
     /// Statistics.
     pub summary: Summary,
@@ -146,27 +149,70 @@ pub fn monte_carlo<'a>(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Reference, ReferenceError> {
-    let mut reference: Option<Reference> = None;
-    for_each_chunk(campaign.into(), samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
-        let outputs = mode_outputs(runner.modes());
-        let mut block = Block::with_capacity(2 * outputs.len(), outputs.len(), runs.len());
-        for run in runs {
-            block.push(&mode_components(run), &run.eigenvalues, run.spectrum.max_re());
+    let campaign = campaign.into();
+    let mut reference: Option<(Reference, Ranks)> = None;
+    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs| {
+        let (reference, ranks) = reference.get_or_insert_with(|| {
+            let ranks = Ranks::of(campaign.study, runs.first());
+            let outputs = mode_outputs(ranks.modes());
+            let summary = Summary::new(2 * outputs.len(), outputs.len());
+            (Reference { outputs, summary }, ranks)
+        });
+        if !ranks.hold_for(runs) {
+            ranks.give_up();
+            reference.outputs.clear();
+            reference.summary.components.clear();
+            reference.summary.eigenvalues.clear();
         }
-        let empty = || Reference { summary: Summary::new(2 * outputs.len(), outputs.len()), outputs };
-        reference.get_or_insert_with(empty).summary.merge(&Summary::of(&block, [0.0; 2]));
+        let mut block = Block::with_capacity(2 * ranks.modes().len(), ranks.modes().len(), runs.len());
+        for run in runs {
+            let lambdas = ranks.eigenvalues(&run.spectrum);
+            let components: Vec<f64> = lambdas.iter().flat_map(|lambda| [lambda.re, lambda.im]).collect();
+            block.push(&components, &lambdas, run.spectrum.top());
+        }
+        reference.summary.merge(&Summary::of(&block, [0.0; 2]));
         Ok(())
     })?;
-    reference.ok_or(ReferenceError::NoSamples)
+    reference.map(|(reference, _)| reference).ok_or(ReferenceError::NoSamples)
+}
+
+/// Frequency ranks of a study's modes, as long as the same number of modes oscillates at every point.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Ranks {
+    count: usize,
+    modes: Vec<usize>,
+}
+
+impl Ranks {
+    /// By the first run; none if a mode that the study lists does not exist.
+    pub fn of(study: &Study, first: Option<&Run>) -> Self {
+        let count = first.map_or(0, |run| run.spectrum.count());
+        Self { count, modes: study.spectrum.modes.ranks(count).unwrap_or_default() }
+    }
+
+    /// Ranks from 1, ascending.
+    pub fn modes(&self) -> &[usize] {
+        &self.modes
+    }
+
+    /// Whether as many modes oscillate in all of these runs.
+    pub fn hold_for(&self, runs: &[Run]) -> bool {
+        self.modes.is_empty() || runs.iter().all(|run| run.spectrum.count() == self.count)
+    }
+
+    /// No mode has a rank any more.
+    pub fn give_up(&mut self) {
+        self.modes.clear();
+    }
+
+    /// The eigenvalues of the modes.
+    pub fn eigenvalues(&self, spectrum: &Spectrum) -> Vec<Complex<f64>> {
+        self.modes.iter().filter_map(|&mode| spectrum.mode(mode).ok()).collect()
+    }
 }
 
 /// Re λ and Im λ of every mode: the components of a reference, whatever a surrogate expands.
 pub(super) fn mode_outputs(modes: &[usize]) -> Vec<Output> {
     // Eigenvalues are not grouped, so no spectrum is needed and nothing can be wrong with one.
     Target::Eigenvalues.outputs(modes, &[]).unwrap_or_default()
-}
-
-/// The values of these components at one point.
-pub(super) fn mode_components(run: &Run) -> Vec<f64> {
-    run.eigenvalues.iter().flat_map(|lambda| [lambda.re, lambda.im]).collect()
 }

@@ -3,9 +3,12 @@
 mod certify;
 mod compare;
 mod direct_computations;
+mod matching;
+mod points;
 mod sample;
 
 pub use certify::certify_with_model;
 pub use compare::{Comparison, ComponentError, compare_with_model};
 pub use direct_computations::{Reference, ReferenceError, check_problem, monte_carlo};
+pub use points::{PointAnswer, PointReference};
 pub use sample::ModelSample;

@@ -1,8 +1,10 @@
 //! Direct computations that are kept, so that many surrogates can be judged on the same points for the price of one.
 
-use super::compare::{Comparison, mode_errors};
-use super::direct_computations::{ReferenceError, for_each_chunk, surrogate_block};
+use super::compare::{Comparison, errors};
+use super::direct_computations::{Ranks, ReferenceError, for_each_chunk, surrogate_block};
+use super::matching::Matching;
 use crate::campaign::Campaign;
+use crate::mechanics::spectrum::Spectrum;
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::Block;
@@ -25,6 +27,10 @@ pub struct ModelSample<'a> {
     modes: Vec<usize>,
     /// Per mode of the study, one eigenvalue per point.
     eigenvalues: Vec<Vec<Complex<f64>>>,
+    /// All eigenvalues at every point, one of each conjugate pair, point after point.
+    halves: Vec<Complex<f64>>,
+    /// Where those of each point end.
+    ends: Vec<usize>,
     /// max Re λ at every point, over all eigenvalues but rigid-body motion.
     max_re: Vec<f64>,
 }
@@ -43,18 +49,36 @@ impl<'a> ModelSample<'a> {
     ) -> Result<Self, ReferenceError> {
         let campaign = campaign.into();
         let study = campaign.study;
-        let mut sample = Self { study, seed, modes: Vec::new(), eigenvalues: Vec::new(), max_re: Vec::new() };
-        for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |runner, _, runs| {
-            if sample.modes.is_empty() {
-                sample.modes = runner.modes().to_vec();
-                sample.eigenvalues = vec![Vec::new(); sample.modes.len()];
+        let mut ranks: Option<Ranks> = None;
+        let mut sample = Self {
+            study,
+            seed,
+            modes: Vec::new(),
+            eigenvalues: Vec::new(),
+            halves: Vec::new(),
+            ends: Vec::new(),
+            max_re: Vec::new(),
+        };
+        for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs| {
+            let ranks = ranks.get_or_insert_with(|| {
+                let ranks = Ranks::of(study, runs.first());
+                sample.eigenvalues = vec![Vec::new(); ranks.modes().len()];
+                ranks
+            });
+            if !ranks.hold_for(runs) {
+                ranks.give_up();
+                sample.eigenvalues.clear();
             }
             for run in runs {
+                sample.halves.extend(run.spectrum.halves());
+                sample.ends.push(sample.halves.len());
                 sample.max_re.push(run.spectrum.max_re());
-                sample.eigenvalues.iter_mut().zip(&run.eigenvalues).for_each(|(list, &lambda)| list.push(lambda));
+                let lambdas = ranks.eigenvalues(&run.spectrum);
+                sample.eigenvalues.iter_mut().zip(lambdas).for_each(|(list, lambda)| list.push(lambda));
             }
             Ok(())
         })?;
+        sample.modes = ranks.map_or(Vec::new(), |ranks| ranks.modes().to_vec());
         Ok(sample)
     }
 
@@ -68,7 +92,7 @@ impl<'a> ModelSample<'a> {
         self.max_re.is_empty()
     }
 
-    /// Frequency ranks of the study's modes, ascending.
+    /// Frequency ranks of the study's modes, ascending; none if their number changes from point to point.
     pub fn modes(&self) -> &[usize] {
         &self.modes
     }
@@ -76,6 +100,12 @@ impl<'a> ModelSample<'a> {
     /// Eigenvalues of the mode at this position of [`ModelSample::modes`], point by point, in 1/s.
     pub fn eigenvalues(&self, position: usize) -> &[Complex<f64>] {
         &self.eigenvalues[position]
+    }
+
+    /// The eigenvalues of the model at a point.
+    fn spectrum(&self, index: usize) -> Option<Spectrum> {
+        let start = if index == 0 { 0 } else { self.ends[index - 1] };
+        Spectrum::from_halves(&self.halves[start..self.ends[index]]).ok()
     }
 
     /// max Re λ of the model, point by point, in 1/s.
@@ -106,7 +136,7 @@ impl<'a> ModelSample<'a> {
     ///
     /// [`ReferenceError::OtherProblem`] if it has other inputs, [`ReferenceError::NotFinite`].
     pub fn surrogate_at(&self, surrogate: &Surrogate, count: usize) -> Result<Block, ReferenceError> {
-        let mut all = Block::with_capacity(surrogate.component_count(), surrogate.modes().len(), count);
+        let mut all = Block::with_capacity(surrogate.component_count(), surrogate.labels().len(), count);
         let plan = Plan::new(surrogate);
         self.for_each_block(surrogate, &plan, count, |_, block| all.append(block))?;
         Ok(all)
@@ -122,11 +152,12 @@ impl<'a> ModelSample<'a> {
     pub fn compare(&self, surrogate: &Surrogate) -> Result<Comparison, ReferenceError> {
         let plan = Plan::new(surrogate);
         let mut comparison = Comparison::new(self.len() as u64);
+        let matching = Matching::new(surrogate, self.study.spectrum.target);
         self.for_each_block(surrogate, &plan, self.len(), |start, block| {
             let range = start..start + block.max_re.len();
             comparison.classify(self.max_re[range.clone()].iter().copied(), &block);
-            let at_point = |position: usize, i: usize| self.eigenvalues[position][start + i];
-            comparison.merge(mode_errors(&self.modes, surrogate, range.len(), at_point, &block));
+            let spectra: Vec<Spectrum> = range.filter_map(|index| self.spectrum(index)).collect();
+            comparison.merge(errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block));
         })?;
         Ok(comparison)
     }

@@ -2,6 +2,7 @@
 
 use super::error::{ReadError, WriteError};
 use super::v1::Document;
+use super::v2::AnyOutputs;
 use crate::foundation::sha256;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian, standard};
 use serde::Serialize;
@@ -37,6 +38,9 @@ impl Section {
 pub(super) const SECTION_NAMES: [&str; 9] =
     ["meta", "inputs", "outputs", "elements", "expansions", "training", "decision", "self_test", "certificates"];
 
+/// Kind of the section of outputs, which has two versions.
+pub(super) const OUTPUTS: u16 = 3;
+
 /// Kind of the optional section of certificates.
 pub(super) const CERTIFICATES: u16 = 9;
 
@@ -44,7 +48,10 @@ pub(super) const CERTIFICATES: u16 = 9;
 fn content_sections(document: &Document) -> Result<Vec<Section>, WriteError> {
     Ok(vec![
         section(2, &document.inputs)?,
-        section(3, &document.outputs)?,
+        match &document.outputs {
+            AnyOutputs::V1(outputs) => section(OUTPUTS, outputs)?,
+            AnyOutputs::V2(outputs) => Section { version: 2, ..section(OUTPUTS, outputs)? },
+        },
         section(4, &document.elements)?,
         section(5, &document.expansions)?,
         section(6, &document.training)?,

@@ -1,8 +1,9 @@
 //! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
 
-use super::binary::{CERTIFICATES, SECTION_NAMES, decode_body, sections};
+use super::binary::{CERTIFICATES, OUTPUTS, SECTION_NAMES, decode_body, sections};
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
+use super::v2::AnyOutputs;
 use super::version::{Compatibility, MAJOR, compatibility};
 use serde::de::DeserializeOwned;
 
@@ -74,7 +75,10 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         format: FormatVersion { major: version.0, minor: version.1 },
         meta: sections.required(1)?,
         inputs: sections.required(2)?,
-        outputs: sections.required(3)?,
+        outputs: match sections.version_of(OUTPUTS) {
+            2 => AnyOutputs::V2(sections.required(OUTPUTS)?),
+            _ => AnyOutputs::V1(sections.required(OUTPUTS)?),
+        },
         elements: sections.required(4)?,
         expansions: sections.required(5)?,
         training: sections.required(6)?,
@@ -85,10 +89,15 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }
 
+/// The latest version of a section that this code knows.
+fn latest_version(kind: u16) -> u16 {
+    if kind == OUTPUTS { 2 } else { 1 }
+}
+
 /// The sections of a file by kind.
 struct Sections<'a> {
-    /// Bodies of those this code knows.
-    known: Vec<(u16, &'a [u8])>,
+    /// Kinds, versions and bodies of those this code knows.
+    known: Vec<(u16, u16, &'a [u8])>,
     /// Kinds of those it may skip.
     skipped: Vec<u16>,
     /// Minor version of the file.
@@ -114,12 +123,12 @@ impl<'a> Sections<'a> {
             }
             let body = usize::try_from(length).ok().and_then(|length| reader.take(length));
             let body = body.ok_or_else(|| damaged(&format!("section {kind} is cut off")))?;
-            let is_known = usize::from(kind) <= SECTION_NAMES.len() && version == 1;
+            let is_known = usize::from(kind) <= SECTION_NAMES.len() && (1..=latest_version(kind)).contains(&version);
             if is_known && (flags == 1) != (kind != CERTIFICATES) {
                 return Err(damaged(&format!("section {kind} has the wrong flags")));
             }
             if is_known {
-                known.push((kind, body));
+                known.push((kind, version, body));
             } else if flags & 1 == 1 {
                 return Err(ReadError::UnknownSection { kind, version, major, minor });
             } else {
@@ -130,9 +139,14 @@ impl<'a> Sections<'a> {
         Ok(Self { known, skipped, minor })
     }
 
+    /// The version in which a section is there; 1 if it is not.
+    fn version_of(&self, kind: u16) -> u16 {
+        self.known.iter().find(|(known, ..)| *known == kind).map_or(1, |&(_, version, _)| version)
+    }
+
     fn optional<T: DeserializeOwned>(&self, kind: u16) -> Result<Option<T>, ReadError> {
-        let found = self.known.iter().find(|(known, _)| *known == kind);
-        found.map(|(_, body)| decode_body(kind, body, self.minor)).transpose()
+        let found = self.known.iter().find(|(known, ..)| *known == kind);
+        found.map(|(.., body)| decode_body(kind, body, self.minor)).transpose()
     }
 
     fn required<T: DeserializeOwned>(&self, kind: u16) -> Result<T, ReadError> {

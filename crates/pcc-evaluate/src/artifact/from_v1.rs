@@ -2,7 +2,7 @@
 
 use super::error::ReadError;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
-use super::v1;
+use super::{v1, v2};
 use crate::components::{Component, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
@@ -101,26 +101,35 @@ fn check_recurrences(section: &v1::Inputs, expansions: &[Expansion]) -> Result<(
     Ok(())
 }
 
-fn outputs(section: v1::Outputs) -> Result<Vec<Output>, ReadError> {
-    let outputs: Vec<Output> = section.outputs.into_iter().map(output).collect::<Result<_, _>>()?;
+fn outputs(section: v2::AnyOutputs) -> Result<Vec<Output>, ReadError> {
+    let is_latest = matches!(section, v2::AnyOutputs::V2(_));
+    let outputs: Vec<Output> = section.into_latest().into_iter().map(output).collect::<Result<_, _>>()?;
+    let has_closed = outputs.iter().any(|output| output.kind == OutputKind::Closed);
+    ensure("outputs", has_closed == is_latest, || "no output needs version 2 of the section".to_owned())?;
     let mut ids: Vec<usize> = outputs.iter().flat_map(|output| &output.components).map(|c| c.id).collect();
     ids.sort_unstable();
     let counted = ids.iter().enumerate().all(|(position, &id)| position == id);
     ensure("outputs", counted && !ids.is_empty(), || "component ids do not count from 0".to_owned())?;
-    let mut modes: Vec<usize> = outputs.iter().flat_map(|output| output.modes.iter().copied()).collect();
-    modes.sort_unstable();
-    let distinct = modes.is_sorted_by(|a, b| a < b) && modes.first().is_none_or(|&first| first > 0);
-    ensure("outputs", distinct, || "mode numbers repeat or are 0".to_owned())?;
+    for (numbers, what) in [(|output| &output.modes) as fn(&Output) -> &Vec<usize>, |output| &output.reals]
+        .into_iter()
+        .zip(["mode", "real"])
+    {
+        let mut numbers: Vec<usize> = outputs.iter().flat_map(numbers).copied().collect();
+        numbers.sort_unstable();
+        let distinct = numbers.is_sorted_by(|a, b| a < b) && numbers.first().is_none_or(|&first| first > 0);
+        ensure("outputs", distinct, || format!("{what} numbers repeat or are 0"))?;
+    }
     Ok(outputs)
 }
 
-fn output(output: v1::Output) -> Result<Output, ReadError> {
+fn output(output: v2::Output) -> Result<Output, ReadError> {
     let kind = match output.kind {
-        v1::OutputKind::Eigenvalue => OutputKind::Eigenvalue,
-        v1::OutputKind::Cluster => OutputKind::Cluster,
-        v1::OutputKind::Scalar => return Err(ReadError::Unsupported { what: "scalar outputs".into() }),
+        v2::OutputKind::Eigenvalue => OutputKind::Eigenvalue,
+        v2::OutputKind::Cluster => OutputKind::Cluster,
+        v2::OutputKind::Closed => OutputKind::Closed,
+        v2::OutputKind::Scalar => return Err(ReadError::Unsupported { what: "scalar outputs".into() }),
     };
-    let is_shaped = kind.components(output.modes.len()) == Some(output.components.len());
+    let is_shaped = kind.components(output.modes.len(), output.reals.len()) == Some(output.components.len());
     ensure("outputs", is_shaped, || format!("{}: wrong number of components or modes", output.name))?;
     let printable = [&output.name, &output.unit].into_iter().all(|name| is_printable(name))
         && output.components.iter().all(|component| is_printable(&component.name));
@@ -136,6 +145,7 @@ fn output(output: v1::Output) -> Result<Output, ReadError> {
     Ok(Output {
         kind,
         modes: output.modes.into_iter().map(|mode| mode as usize).collect(),
+        reals: output.reals.into_iter().map(|number| number as usize).collect(),
         name: output.name,
         unit: output.unit,
         components: output.components.into_iter().map(component).collect(),

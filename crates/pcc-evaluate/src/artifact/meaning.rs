@@ -7,7 +7,7 @@ use super::v1::{self, Document};
 pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
     let sections: [(&str, Vec<f64>); 8] = [
         ("inputs", document.inputs.inputs.iter().flat_map(input).collect()),
-        ("outputs", document.outputs.outputs.iter().flat_map(output).collect()),
+        ("outputs", document.outputs.components().flat_map(|component| [component.center, component.scale]).collect()),
         ("elements", elements(&document.elements)),
         ("expansions", document.expansions.expansions.iter().flat_map(expansion).collect()),
         ("training", document.training.settings.iter().filter_map(setting).collect()),
@@ -33,10 +33,6 @@ fn input(input: &v1::Input) -> Vec<f64> {
 
 fn bounds(bounds: &Option<v1::Bounds>) -> impl Iterator<Item = f64> {
     bounds.iter().flat_map(|bounds| [bounds.lower, bounds.upper])
-}
-
-fn output(output: &v1::Output) -> Vec<f64> {
-    output.components.iter().flat_map(|component| [component.center, component.scale]).collect()
 }
 
 fn elements(elements: &v1::Elements) -> Vec<f64> {

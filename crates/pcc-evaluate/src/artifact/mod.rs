@@ -16,6 +16,7 @@ mod schema;
 mod tests;
 mod to_v1;
 pub mod v1;
+pub mod v2;
 pub mod version;
 
 pub use error::{LossError, ReadError, SaveError, WriteError};

@@ -1,7 +1,8 @@
 //! One test per way a file can be wrong, in the order in which readers find them.
 
 use super::error::{ReadError, WriteError};
-use super::{Format, binary, container, decode, encode, from_v1, json, to_v1, v1};
+use super::{Format, binary, container, decode, encode, from_v1, json, to_v1, v1, v2};
+use crate::components::OutputKind;
 use crate::surrogate::{Certificate, Surrogate};
 use proptest::prelude::*;
 use std::sync::LazyLock;
@@ -26,9 +27,23 @@ fn forged(change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     bytes
 }
 
+/// The same surrogate with its two outputs as closed groups: of one mode, and of two real eigenvalues.
+static CLOSED: LazyLock<Surrogate> = LazyLock::new(|| {
+    let mut surrogate = SURROGATE.clone();
+    surrogate.outputs.iter_mut().for_each(|output| output.kind = OutputKind::Closed);
+    surrogate.outputs[1].modes.clear();
+    surrogate.outputs[1].reals = vec![1, 2];
+    surrogate.self_test = surrogate.make_self_test(surrogate.self_test.points.clone());
+    surrogate
+});
+
 /// What reading finds in a document with a change and a content id that matches it.
 fn meaning(change: impl FnOnce(&mut v1::Document)) -> ReadError {
-    let mut document = to_v1::document(&SURROGATE).unwrap();
+    meaning_of(&SURROGATE, change)
+}
+
+fn meaning_of(surrogate: &Surrogate, change: impl FnOnce(&mut v1::Document)) -> ReadError {
+    let mut document = to_v1::document(surrogate).unwrap();
     change(&mut document);
     document.meta.content_id = binary::content_id(&document).unwrap();
     let by_binary = decode(&container::encode(&document).unwrap()).unwrap_err();
@@ -218,18 +233,82 @@ fn inputs_that_make_no_sense() {
 
 #[test]
 fn outputs_that_make_no_sense() {
-    assert_eq!(section_of(meaning(|d| d.outputs.outputs[0].components[0].id = 9)), "outputs");
-    assert_eq!(section_of(meaning(|d| d.outputs.outputs[0].components[0].scale = 0.0)), "outputs");
-    assert_eq!(section_of(meaning(|d| d.outputs.outputs[0].modes = vec![4])), "outputs");
-    assert_eq!(section_of(meaning(|d| d.outputs.outputs[0].modes.clear())), "outputs");
-    assert_eq!(section_of(meaning(|d| d.outputs.outputs.clear())), "outputs");
-    let cluster_of_one = meaning(|d| d.outputs.outputs[0].kind = v1::OutputKind::Cluster);
-    assert_eq!(section_of(cluster_of_one), "outputs");
+    let of_v1 = |change: fn(&mut Vec<v1::Output>)| {
+        let error = meaning(|d| match &mut d.outputs {
+            v2::AnyOutputs::V1(section) => change(&mut section.outputs),
+            v2::AnyOutputs::V2(_) => panic!("not needed"),
+        });
+        assert_eq!(section_of(error), "outputs");
+    };
+    of_v1(|outputs| outputs[0].components[0].id = 9);
+    of_v1(|outputs| outputs[0].components[0].scale = 0.0);
+    of_v1(|outputs| outputs[0].modes = vec![4]);
+    of_v1(|outputs| outputs[0].modes.clear());
+    of_v1(|outputs| outputs.clear());
+    of_v1(|outputs| outputs[0].kind = v1::OutputKind::Cluster);
+}
+
+#[test]
+fn closed_outputs_that_make_no_sense() {
+    let of_v2 = |change: fn(&mut Vec<v2::Output>)| {
+        let error = meaning_of(&CLOSED, |d| match &mut d.outputs {
+            v2::AnyOutputs::V1(_) => panic!("they need version 2"),
+            v2::AnyOutputs::V2(section) => change(&mut section.outputs),
+        });
+        assert_eq!(section_of(error), "outputs");
+    };
+    of_v2(|outputs| outputs[0].modes.push(7));
+    of_v2(|outputs| outputs[0].modes = vec![0]);
+    of_v2(|outputs| outputs[0].reals.push(3));
+    of_v2(|outputs| outputs[1].reals = vec![1, 1]);
+    of_v2(|outputs| outputs[1].reals = vec![0, 1]);
+    of_v2(|outputs| outputs[1].reals = vec![1]);
+    of_v2(|outputs| outputs[1].kind = v2::OutputKind::Cluster);
+    of_v2(|outputs| outputs[0].components[1].scale = 0.0);
+    of_v2(|outputs| outputs[1].components[0].id = 0);
+    of_v2(|outputs| {
+        // More eigenvalues than a closed group may have.
+        let more = |id: u32| v1::Component { id, ..outputs[1].components[0].clone() };
+        let extended: Vec<v1::Component> = (2..11).map(more).collect();
+        (outputs[1].components, outputs[1].reals) = (extended, (1..=9).collect());
+    });
+    of_v2(|outputs| {
+        // Nothing that needs version 2.
+        outputs.iter_mut().for_each(|output| output.kind = v2::OutputKind::Eigenvalue);
+        outputs[1].modes = vec![9];
+        outputs[1].reals.clear();
+    });
+}
+
+#[test]
+fn closed_outputs_come_back_in_both_forms() {
+    for format in [Format::Binary, Format::Json] {
+        let bytes = encode(&CLOSED, format).unwrap();
+        let artifact = decode(&bytes).unwrap();
+        assert!(artifact.surrogate == *CLOSED && artifact.is_canonical && artifact.version == (1, 3));
+        assert_eq!(encode(&artifact.surrogate, format).unwrap(), bytes);
+    }
+}
+
+#[test]
+fn real_eigenvalues_are_there_for_all_outputs_or_for_none() {
+    let text = String::from_utf8(encode(&CLOSED, Format::Json).unwrap()).unwrap();
+    for forged in [text.replacen(",\"reals\":[]", "", 1), text.replacen(",\"reals\":[1,2]", "", 1)] {
+        assert_ne!(forged, text);
+        let error = decode(forged.as_bytes()).unwrap_err();
+        assert!(matches!(&error, ReadError::Json { message, .. } if message.contains("reals")), "{error}");
+    }
+    let plain = String::from_utf8(encode(&SURROGATE, Format::Json).unwrap()).unwrap();
+    let forged = plain.replacen("\"kind\":\"eigenvalue\"", "\"kind\":\"closed\"", 1);
+    assert!(matches!(decode(forged.as_bytes()), Err(ReadError::Json { .. })));
 }
 
 #[test]
 fn kinds_of_later_versions_are_named() {
-    let scalar = meaning(|d| d.outputs.outputs[0].kind = v1::OutputKind::Scalar);
+    let scalar = meaning(|d| match &mut d.outputs {
+        v2::AnyOutputs::V1(section) => section.outputs[0].kind = v1::OutputKind::Scalar,
+        v2::AnyOutputs::V2(_) => panic!("not needed"),
+    });
     assert!(matches!(scalar, ReadError::Unsupported { .. }), "{scalar}");
 }
 

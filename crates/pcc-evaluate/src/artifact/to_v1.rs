@@ -3,7 +3,7 @@
 use super::error::WriteError;
 use super::meaning::not_finite;
 use super::version::{MAJOR, minor};
-use super::{binary, v1};
+use super::{binary, v1, v2};
 use crate::components::{Output, OutputKind};
 use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh};
 use crate::probability::inputs::Marginal;
@@ -22,7 +22,7 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
             content_id: String::new(),
         },
         inputs: inputs(surrogate),
-        outputs: v1::Outputs { outputs: surrogate.outputs.iter().map(output).collect() },
+        outputs: outputs(surrogate),
         elements: elements(&surrogate.mesh),
         expansions: expansions(surrogate),
         training: training(surrogate),
@@ -70,23 +70,52 @@ fn inputs(surrogate: &Surrogate) -> v1::Inputs {
     v1::Inputs { inputs, dependence: v1::Dependence::Independent }
 }
 
-fn output(output: &Output) -> v1::Output {
+/// In version 1 of the section, if that can say it.
+fn outputs(surrogate: &Surrogate) -> v2::AnyOutputs {
+    let in_v1: Option<Vec<v1::Output>> = surrogate.outputs.iter().map(output_v1).collect();
+    match in_v1 {
+        Some(outputs) => v2::AnyOutputs::V1(v1::Outputs { outputs }),
+        None => v2::AnyOutputs::V2(v2::Outputs { outputs: surrogate.outputs.iter().map(output_v2).collect() }),
+    }
+}
+
+fn output_v1(output: &Output) -> Option<v1::Output> {
+    Some(v1::Output {
+        kind: match output.kind {
+            OutputKind::Eigenvalue => v1::OutputKind::Eigenvalue,
+            OutputKind::Cluster => v1::OutputKind::Cluster,
+            OutputKind::Closed => return None,
+        },
+        modes: output.modes.iter().map(|&mode| mode as u32).collect(),
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        components: components(output),
+    })
+}
+
+fn output_v2(output: &Output) -> v2::Output {
+    v2::Output {
+        kind: match output.kind {
+            OutputKind::Eigenvalue => v2::OutputKind::Eigenvalue,
+            OutputKind::Cluster => v2::OutputKind::Cluster,
+            OutputKind::Closed => v2::OutputKind::Closed,
+        },
+        modes: output.modes.iter().map(|&mode| mode as u32).collect(),
+        reals: output.reals.iter().map(|&number| number as u32).collect(),
+        name: output.name.clone(),
+        unit: output.unit.clone(),
+        components: components(output),
+    }
+}
+
+fn components(output: &Output) -> Vec<v1::Component> {
     let component = |component: &crate::components::Component| v1::Component {
         id: component.id as u32,
         name: component.name.clone(),
         center: component.center,
         scale: component.scale,
     };
-    v1::Output {
-        kind: match output.kind {
-            OutputKind::Eigenvalue => v1::OutputKind::Eigenvalue,
-            OutputKind::Cluster => v1::OutputKind::Cluster,
-        },
-        modes: output.modes.iter().map(|&mode| mode as u32).collect(),
-        name: output.name.clone(),
-        unit: output.unit.clone(),
-        components: output.components.iter().map(component).collect(),
-    }
+    output.components.iter().map(component).collect()
 }
 
 fn elements(mesh: &Mesh) -> v1::Elements {

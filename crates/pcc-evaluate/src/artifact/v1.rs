@@ -7,6 +7,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::v2::AnyOutputs;
+
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
@@ -20,7 +22,7 @@ pub struct Document {
     /// Section 2.
     pub inputs: Inputs,
     /// Section 3.
-    pub outputs: Outputs,
+    pub outputs: AnyOutputs,
     /// Section 4.
     pub elements: Elements,
     /// Section 5.

@@ -15,7 +15,8 @@ pub const MAJOR: u16 = 1;
 ///   equal frequencies within 10⁻¹² by Re λ.
 /// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
 ///   the search for an expansion ended that full expansions have.
-pub const MINOR: u16 = 2;
+/// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation.
+pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
 /// read what they can.
@@ -25,7 +26,11 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     };
     let needs_2 = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
-    if needs_2 { 2 } else { u16::from(has_clusters) }
+    match surrogate.has_real_eigenvalues() {
+        true => 3,
+        false if needs_2 => 2,
+        false => u16::from(has_clusters),
+    }
 }
 
 /// What this code can do with a file.

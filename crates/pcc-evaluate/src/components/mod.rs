@@ -1,9 +1,13 @@
 //! How components become eigenvalues again, and what is summed up of eigenvalues over a sample.
 
+mod closed;
+mod label;
 mod recombination;
 mod roots;
 mod summary;
 
+pub use closed::{MOST_IN_CLOSED_GROUP, closed_eigenvalues, closed_pair};
+pub use label::{Label, Verdict};
 pub use recombination::{Component, MOST_MODES, Output, OutputKind, is_equal_frequency, spectral_abscissa};
 pub use roots::{is_safe_square, roots, square_root};
-pub use summary::{Block, ModeSummary, Summary, damping_ratio};
+pub use summary::{Block, EigenvalueSummary, Summary, damping_ratio};

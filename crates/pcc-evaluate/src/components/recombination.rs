@@ -1,5 +1,7 @@
 //! From components to eigenvalues: the part of the spectrum that an evaluator needs.
 
+use super::closed::{MOST_IN_CLOSED_GROUP, closed_eigenvalues};
+use super::label::Label;
 use crate::components::roots::{roots, square_root};
 use num_complex::Complex;
 
@@ -12,17 +14,25 @@ pub enum OutputKind {
     /// c_{k−2}, …, c_0 of z^k + c_{k−2} z^{k−2} + … + c_0, whose roots are λ − s. They are smooth where eigenvalues
     /// coalesce.
     Cluster,
+    /// n real components: the elementary symmetric functions e₁, …, eₙ of n eigenvalues that are closed under
+    /// conjugation, roots of λⁿ − e₁ λⁿ⁻¹ + e₂ λⁿ⁻² − …. They are two for every mode and one for every real eigenvalue
+    /// that belongs to no mode, and smooth where a mode meets its conjugate on the real axis.
+    Closed,
 }
 
 /// Frequencies that differ by at most this share of |λ| are equal but for rounding, and rank by growth rate.
 const EQUAL_FREQUENCY: f64 = 1e-12;
 
 impl OutputKind {
-    /// Number of components of such an output for so many modes; `None` if it cannot have so many.
-    pub fn components(self, modes: usize) -> Option<usize> {
-        match (self, modes) {
-            (Self::Eigenvalue, 1) => Some(2),
-            (Self::Cluster, 2..=MOST_MODES) => Some(2 * modes),
+    /// Number of components of such an output for so many modes, and real eigenvalues beside them; `None` if it cannot
+    /// have so many.
+    pub fn components(self, modes: usize, reals: usize) -> Option<usize> {
+        match (self, modes, reals) {
+            (Self::Eigenvalue, 1, 0) => Some(2),
+            (Self::Cluster, 2..=MOST_MODES, 0) => Some(2 * modes),
+            (Self::Closed, 0..=MOST_IN_CLOSED_GROUP, 0..=MOST_IN_CLOSED_GROUP) => {
+                Some(2 * modes + reals).filter(|count| (1..=MOST_IN_CLOSED_GROUP).contains(count))
+            }
             _ => None,
         }
     }
@@ -49,8 +59,10 @@ pub struct Component {
 pub struct Output {
     /// How components become eigenvalues.
     pub kind: OutputKind,
-    /// Frequency ranks of the modes it yields, from 1.
+    /// Numbers of the modes it yields, from 1.
     pub modes: Vec<usize>,
+    /// Numbers of the real eigenvalues it yields that belong to no mode, from 1.
+    pub reals: Vec<usize>,
     /// Name in tables.
     pub name: String,
     /// Unit of the eigenvalues.
@@ -60,13 +72,36 @@ pub struct Output {
 }
 
 impl Output {
-    /// Appends the eigenvalues of this output's modes, by frequency, to `eigenvalues`, given the values of all
-    /// components by id.
+    /// The names of its eigenvalues, in the order in which [`Output::recombine`] yields them.
+    pub fn labels(&self) -> impl Iterator<Item = Label> {
+        let seconds = if self.kind == OutputKind::Closed { &self.modes[..] } else { &[] };
+        let modes = self.modes.iter().map(|&mode| Label::Mode(mode));
+        let seconds = seconds.iter().map(|&mode| Label::Second(mode));
+        modes.chain(seconds).chain(self.reals.iter().map(|&number| Label::Real(number)))
+    }
+
+    /// Number of eigenvalues it yields.
+    pub fn eigenvalue_count(&self) -> usize {
+        if self.kind == OutputKind::Closed { self.components.len() } else { self.modes.len() }
+    }
+
+    /// Appends the eigenvalues of this output to `eigenvalues`, in the order of [`Output::labels`], given the values of
+    /// all components by id. Modes of a cluster come by frequency.
     #[inline]
     pub fn recombine(&self, values: &[f64], eigenvalues: &mut Vec<Complex<f64>>) {
         let part = |k: usize| Complex::new(values[self.components[2 * k].id], values[self.components[2 * k + 1].id]);
         match (self.kind, self.modes.len()) {
             (OutputKind::Eigenvalue, _) => eigenvalues.push(part(0)),
+            (OutputKind::Closed, modes) => {
+                let (mut symmetric, mut found) =
+                    ([0.0; MOST_IN_CLOSED_GROUP], [Complex::default(); MOST_IN_CLOSED_GROUP]);
+                let count = self.components.len().min(MOST_IN_CLOSED_GROUP);
+                for (e, component) in symmetric.iter_mut().zip(&self.components) {
+                    *e = values[component.id];
+                }
+                closed_eigenvalues(&symmetric[..count], modes, &mut found[..count]);
+                eigenvalues.extend_from_slice(&found[..count]);
+            }
             (OutputKind::Cluster, 2) => {
                 // λ = s ± √−c_0
                 let (mean, root) = (part(0), square_root(-part(1)));

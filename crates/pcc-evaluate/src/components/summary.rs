@@ -1,21 +1,25 @@
-//! What many samples of a spectrum say: stability, and per mode what engineers read.
+//! What many samples of a spectrum say: stability, and per eigenvalue what engineers read.
 
 use crate::probability::statistics::{Merge, Moments, Proportion};
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
 
-/// Statistics of one mode.
+/// Statistics of one eigenvalue: the first of a mode, its second, or one that belongs to no mode.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ModeSummary {
+pub struct EigenvalueSummary {
     /// Growth rate Re λ, in 1/s.
     pub growth_rate: Moments,
     /// Angular frequency Im λ, in rad/s.
     pub angular_frequency: Moments,
     /// Damping ratio −Re λ/|λ|.
     pub damping_ratio: Moments,
-    /// Samples in which this mode is unstable, Re λ ≥ 0.
+    /// Samples in which it is unstable, Re λ ≥ 0.
     pub unstable: u64,
+    /// Samples in which it is real.
+    pub real: u64,
+    /// Samples in which it is real and unstable.
+    pub divergent: u64,
 }
 
 /// Damping ratio −Re λ/|λ|; 0 for λ = 0.
@@ -31,33 +35,36 @@ pub fn damping_ratio(re: f64, im: f64) -> f64 {
 pub struct Summary {
     /// Samples with max Re λ < 0.
     pub stable: u64,
+    /// Unstable samples whose eigenvalue with the largest Re λ is real: they diverge, the other unstable ones flutter.
+    pub divergent: u64,
     /// Samples that would be stable if max Re λ were larger by the first, and by the second, of two shifts.
     pub stable_if_shifted: [u64; 2],
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Moments,
     /// Every component by id.
     pub components: Vec<Moments>,
-    /// Every mode.
-    pub modes: Vec<ModeSummary>,
+    /// Every eigenvalue.
+    pub eigenvalues: Vec<EigenvalueSummary>,
 }
 
 impl Summary {
-    /// No samples yet, of so many components and modes.
-    pub fn new(components: usize, modes: usize) -> Self {
+    /// No samples yet, of so many components and eigenvalues.
+    pub fn new(components: usize, eigenvalues: usize) -> Self {
         Self {
             stable: 0,
+            divergent: 0,
             stable_if_shifted: [0; 2],
             max_re: Moments::default(),
             components: vec![Moments::default(); components],
-            modes: vec![ModeSummary::default(); modes],
+            eigenvalues: vec![EigenvalueSummary::default(); eigenvalues],
         }
     }
 
-    /// All moments: of max Re λ, of every component, of every mode.
+    /// All moments: of max Re λ, of every component, of every eigenvalue.
     pub fn moments(&self) -> impl Iterator<Item = &Moments> {
-        let modes = self.modes.iter();
-        let of_modes = modes.flat_map(|mode| [&mode.growth_rate, &mode.angular_frequency, &mode.damping_ratio]);
-        std::iter::once(&self.max_re).chain(&self.components).chain(of_modes)
+        let of_eigenvalues =
+            self.eigenvalues.iter().flat_map(|own| [&own.growth_rate, &own.angular_frequency, &own.damping_ratio]);
+        std::iter::once(&self.max_re).chain(&self.components).chain(of_eigenvalues)
     }
 
     /// Number of samples.
@@ -70,43 +77,61 @@ impl Summary {
         Proportion { hits: self.stable, samples: self.samples() }
     }
 
+    /// Unstable samples.
+    pub fn unstable(&self) -> u64 {
+        self.samples() - self.stable
+    }
+
+    /// Unstable samples whose eigenvalue with the largest Re λ oscillates.
+    pub fn fluttering(&self) -> u64 {
+        self.unstable() - self.divergent
+    }
+
     /// The statistics of one block of samples. `shifts`, in 1/s, are errors of max Re λ that could be.
     pub fn of(block: &Block, shifts: [f64; 2]) -> Self {
-        let modes = block.eigenvalues.iter().map(|lambdas| {
+        let eigenvalues = block.eigenvalues.iter().map(|lambdas| {
             let part = |part: fn(&Complex<f64>) -> f64| Moments::of(&lambdas.iter().map(part).collect::<Vec<_>>());
-            ModeSummary {
+            let count = |holds: fn(&&Complex<f64>) -> bool| lambdas.iter().filter(holds).count() as u64;
+            EigenvalueSummary {
                 growth_rate: part(|lambda| lambda.re),
                 angular_frequency: part(|lambda| lambda.im),
                 damping_ratio: part(|lambda| damping_ratio(lambda.re, lambda.im)),
-                unstable: lambdas.iter().filter(|lambda| lambda.re >= 0.0).count() as u64,
+                unstable: count(|lambda| lambda.re >= 0.0),
+                real: count(|lambda| lambda.im == 0.0),
+                divergent: count(|lambda| lambda.im == 0.0 && lambda.re >= 0.0),
             }
         });
         let stable = |shift: f64| block.max_re.iter().filter(|&&max_re| max_re + shift < 0.0).count() as u64;
+        let diverges = |(max_re, frequency): &(&f64, &f64)| **max_re >= 0.0 && **frequency == 0.0;
         Self {
             stable: stable(0.0),
+            divergent: block.max_re.iter().zip(&block.top_frequency).filter(diverges).count() as u64,
             stable_if_shifted: shifts.map(stable),
             max_re: Moments::of(&block.max_re),
             components: block.components.iter().map(|values| Moments::of(values)).collect(),
-            modes: modes.collect(),
+            eigenvalues: eigenvalues.collect(),
         }
     }
 }
 
 impl Merge for Summary {
-    /// Adds the samples of `other`, which has as many components and modes.
+    /// Adds the samples of `other`, which has as many components and eigenvalues.
     fn merge(&mut self, other: &Self) {
         self.stable += other.stable;
+        self.divergent += other.divergent;
         self.stable_if_shifted[0] += other.stable_if_shifted[0];
         self.stable_if_shifted[1] += other.stable_if_shifted[1];
         self.max_re.merge(&other.max_re);
         for (own, added) in self.components.iter_mut().zip(&other.components) {
             own.merge(added);
         }
-        for (own, added) in self.modes.iter_mut().zip(&other.modes) {
+        for (own, added) in self.eigenvalues.iter_mut().zip(&other.eigenvalues) {
             own.growth_rate.merge(&added.growth_rate);
             own.angular_frequency.merge(&added.angular_frequency);
             own.damping_ratio.merge(&added.damping_ratio);
             own.unstable += added.unstable;
+            own.real += added.real;
+            own.divergent += added.divergent;
         }
     }
 }
@@ -116,35 +141,42 @@ impl Merge for Summary {
 pub struct Block {
     /// Values of every component by id.
     pub components: Vec<Vec<f64>>,
-    /// Eigenvalues of every mode, in 1/s.
+    /// Every eigenvalue, in the order of the labels, in 1/s.
     pub eigenvalues: Vec<Vec<Complex<f64>>>,
     /// max Re λ, in 1/s.
     pub max_re: Vec<f64>,
+    /// Im λ of the eigenvalue with the largest Re λ, in rad/s: 0 where it is real.
+    pub top_frequency: Vec<f64>,
 }
 
 impl Block {
     /// An empty block with room for `samples` samples.
-    pub fn with_capacity(components: usize, modes: usize, samples: usize) -> Self {
+    pub fn with_capacity(components: usize, eigenvalues: usize, samples: usize) -> Self {
         Self {
             components: (0..components).map(|_| Vec::with_capacity(samples)).collect(),
-            eigenvalues: (0..modes).map(|_| Vec::with_capacity(samples)).collect(),
+            eigenvalues: (0..eigenvalues).map(|_| Vec::with_capacity(samples)).collect(),
             max_re: Vec::with_capacity(samples),
+            top_frequency: Vec::with_capacity(samples),
         }
     }
 
-    /// Adds the samples of `other`, which has as many components and modes.
+    /// Adds the samples of `other`, which has as many components and eigenvalues.
     pub fn append(&mut self, mut other: Self) {
         self.components.iter_mut().zip(&mut other.components).for_each(|(own, added)| own.append(added));
         self.eigenvalues.iter_mut().zip(&mut other.eigenvalues).for_each(|(own, added)| own.append(added));
         self.max_re.append(&mut other.max_re);
+        self.top_frequency.append(&mut other.top_frequency);
     }
 
     /// The first `count` samples.
     pub fn first(&self, count: usize) -> Self {
-        let lists = |lists: &[Vec<f64>]| lists.iter().map(|list| list[..count.min(list.len())].to_vec()).collect();
-        let lambdas = self.eigenvalues.iter().map(|list| list[..count.min(list.len())].to_vec()).collect();
-        let max_re = self.max_re[..count.min(self.max_re.len())].to_vec();
-        Self { components: lists(&self.components), eigenvalues: lambdas, max_re }
+        let few = |list: &[f64]| list[..count.min(list.len())].to_vec();
+        Self {
+            components: self.components.iter().map(|list| few(list)).collect(),
+            eigenvalues: self.eigenvalues.iter().map(|list| list[..count.min(list.len())].to_vec()).collect(),
+            max_re: few(&self.max_re),
+            top_frequency: few(&self.top_frequency),
+        }
     }
 
     /// The first sample whose max Re λ is not finite, because a component overflowed.
@@ -152,15 +184,16 @@ impl Block {
         self.max_re.iter().position(|max_re| !max_re.is_finite())
     }
 
-    /// Adds one sample.
+    /// Adds one sample; `top` is its eigenvalue with the largest Re λ, which need not be among the `eigenvalues`.
     #[inline]
-    pub fn push(&mut self, components: &[f64], eigenvalues: &[Complex<f64>], max_re: f64) {
+    pub fn push(&mut self, components: &[f64], eigenvalues: &[Complex<f64>], top: Complex<f64>) {
         for (list, &value) in self.components.iter_mut().zip(components) {
             list.push(value);
         }
         for (list, &lambda) in self.eigenvalues.iter_mut().zip(eigenvalues) {
             list.push(lambda);
         }
-        self.max_re.push(max_re);
+        self.max_re.push(top.re);
+        self.top_frequency.push(top.im);
     }
 }

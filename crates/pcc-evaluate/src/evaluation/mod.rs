@@ -12,6 +12,7 @@ mod questions;
 mod test_surrogates;
 
 pub use analysis::critical::{CRITICAL_LEVELS, CriticalValues, critical_values, critical_values_in};
+pub use analysis::crossings::Crossing;
 pub use analysis::self_test::self_test_difference;
 pub use analysis::sensitivity::{
     Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity, sensitivities, sensitivities_in,

@@ -42,6 +42,7 @@ pub fn surrogate(inputs: InputSpace, growth_rates: Vec<Expansion>) -> Surrogate 
         outputs.push(Output {
             kind: OutputKind::Eigenvalue,
             modes: vec![mode + 1],
+            reals: Vec::new(),
             name: format!("mode {}", mode + 1),
             unit: "1/s".to_owned(),
             components: vec![component(2 * mode, 0.0), component(2 * mode + 1, 10.0 + mode as f64)],

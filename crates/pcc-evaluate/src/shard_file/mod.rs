@@ -4,9 +4,9 @@
 //! with it: parts can be computed anywhere, in any order, and [`merge`] needs nothing but the parts. Parts of the same
 //! question are merged to the same bytes, whatever the samples were divided into.
 //!
-//! # File format 1
+//! # File format 2
 //!
-//! Two lines of JSON. The first is `{"pcc_part": 1, "length": …, "sha256": …}` with length in bytes and SHA-256 of the
+//! Two lines of JSON. The first is `{"pcc_part": 2, "length": …, "sha256": …}` with length in bytes and SHA-256 of the
 //! second, which holds the version of pcc, the surrogate as in a JSON surrogate file, the question and the findings.
 
 use crate::artifact::{self, Format, ReadError, WriteError};
@@ -21,7 +21,7 @@ use std::path::Path;
 use thiserror::Error;
 
 /// Version of the file format.
-const VERSION: u64 = 1;
+const VERSION: u64 = 2;
 
 /// Version of this program.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");

@@ -92,8 +92,8 @@ fn damaged_files_are_refused() {
         assert!(Part::from_bytes(&damaged).is_err(), "byte {place}");
     }
     let text = String::from_utf8(bytes).unwrap();
-    let newer = text.replacen("\"pcc_part\":1", "\"pcc_part\":2", 1);
-    assert!(matches!(Part::from_bytes(newer.as_bytes()), Err(PartError::Version { found: 2 })));
+    let newer = text.replacen("\"pcc_part\":2", "\"pcc_part\":3", 1);
+    assert!(matches!(Part::from_bytes(newer.as_bytes()), Err(PartError::Version { found: 3 })));
     assert!(matches!(Part::from_bytes(b"mu,k_p\n0.1,2"), Err(PartError::NotAPart)));
 }
 

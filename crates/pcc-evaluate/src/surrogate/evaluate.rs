@@ -36,7 +36,7 @@ impl Surrogate {
         values
     }
 
-    /// Eigenvalues of all modes, in the order of [`Surrogate::modes`], from the values of all components.
+    /// All eigenvalues, in the order of [`Surrogate::labels`], from the values of all components.
     pub fn eigenvalues(&self, components: &[f64]) -> Vec<Complex<f64>> {
         let mut eigenvalues = Vec::new();
         for output in &self.outputs {
@@ -45,7 +45,7 @@ impl Surrogate {
         eigenvalues
     }
 
-    /// max Re λ over all modes, in 1/s, from the values of all components.
+    /// max Re λ over all eigenvalues, in 1/s, from the values of all components.
     pub fn max_re(&self, components: &[f64]) -> f64 {
         spectral_abscissa(&self.eigenvalues(components))
     }

@@ -14,7 +14,7 @@ pub use records::{
 };
 pub use sobol::SobolIndices;
 
-use crate::components::{Component, Output};
+use crate::components::{Component, Label, Output, OutputKind};
 use crate::polynomials::Mesh;
 use crate::probability::inputs::InputSpace;
 
@@ -68,8 +68,18 @@ impl Surrogate {
         self.expansions.iter().skip(component).step_by(self.component_count())
     }
 
-    /// Frequency ranks of all modes it carries, in the order in which recombination yields them.
+    /// Numbers of all modes it carries, output by output.
     pub fn modes(&self) -> Vec<usize> {
         self.outputs.iter().flat_map(|output| output.modes.iter().copied()).collect()
+    }
+
+    /// The names of all eigenvalues it yields, in the order in which recombination yields them.
+    pub fn labels(&self) -> Vec<Label> {
+        self.outputs.iter().flat_map(Output::labels).collect()
+    }
+
+    /// Whether some of its eigenvalues can be real.
+    pub fn has_real_eigenvalues(&self) -> bool {
+        self.outputs.iter().any(|output| output.kind == OutputKind::Closed)
     }
 }

@@ -26,8 +26,9 @@ use thiserror::Error;
 /// The first bytes of a journal. The high bit, line ends and the end-of-file character reveal transfers as text.
 pub const MAGIC: [u8; 8] = *b"\x89PCJ\r\n\x1a\n";
 
-/// Version 1: records as described in `record`.
-const VERSION: u32 = 1;
+/// Version 2: records as described in `record`. Version 1 had other derivatives; what it recorded is read, and a
+/// journal that is opened for more becomes one of version 2.
+const VERSION: u32 = 2;
 
 const HEADER_BYTES: usize = MAGIC.len() + 4;
 
@@ -136,6 +137,9 @@ impl Journal {
         file.read_to_end(&mut bytes).map_err(failed)?;
         let (contents, end) = contents(path, &bytes)?;
         let is_blank = bytes.len() < HEADER_BYTES;
+        if !is_blank && bytes[..HEADER_BYTES] != header(VERSION) {
+            renew_header(&mut file).map_err(failed)?;
+        }
         if is_blank {
             begin(&mut file).and_then(|()| sync_folder(path)).map_err(failed)?;
         } else if end < bytes.len() as u64 {
@@ -255,17 +259,24 @@ fn io_error(path: &Path, cause: &io::Error) -> JournalError {
     JournalError::Io { path: path.display().to_string(), kind: cause.kind(), cause: cause.to_string() }
 }
 
-fn header() -> [u8; HEADER_BYTES] {
+fn header(version: u32) -> [u8; HEADER_BYTES] {
     let mut header = [0; HEADER_BYTES];
     header[..MAGIC.len()].copy_from_slice(&MAGIC);
-    header[MAGIC.len()..].copy_from_slice(&VERSION.to_le_bytes());
+    header[MAGIC.len()..].copy_from_slice(&version.to_le_bytes());
     header
+}
+
+/// Writes the header of this version over that of an older one.
+fn renew_header(file: &mut File) -> io::Result<()> {
+    file.rewind()?;
+    file.write_all(&header(VERSION))?;
+    file.sync_data()
 }
 
 fn begin(file: &mut File) -> io::Result<()> {
     file.set_len(0)?;
     file.rewind()?;
-    file.write_all(&header())?;
+    file.write_all(&header(VERSION))?;
     file.sync_all()
 }
 
@@ -287,10 +298,10 @@ fn sync_folder(path: &Path) -> io::Result<()> {
 
 /// The records in `bytes`, and where the last sound one ends.
 fn contents(path: &Path, bytes: &[u8]) -> Result<(Contents, u64), JournalError> {
-    let header = header();
+    let known = (1..=VERSION).map(header);
     if bytes.len() < HEADER_BYTES {
         // A header that was not yet whole.
-        return match header.starts_with(bytes) {
+        return match known.clone().any(|header| header.starts_with(bytes)) {
             true => Ok((Contents::default(), HEADER_BYTES as u64)),
             false => Err(JournalError::NotAJournal { path: path.display().to_string() }),
         };
@@ -298,7 +309,7 @@ fn contents(path: &Path, bytes: &[u8]) -> Result<(Contents, u64), JournalError> 
     if bytes[..MAGIC.len()] != MAGIC {
         return Err(JournalError::NotAJournal { path: path.display().to_string() });
     }
-    if bytes[..HEADER_BYTES] != header {
+    if !known.clone().any(|header| bytes[..HEADER_BYTES] == header) {
         let found = bytes[MAGIC.len()..HEADER_BYTES].iter().rev().fold(0, |all, &byte| all << 8 | u32::from(byte));
         return Err(JournalError::Version { path: path.display().to_string(), found });
     }
@@ -388,7 +399,7 @@ mod tests {
             assert_eq!(std::fs::read_to_string(&path).unwrap(), content);
         }
         assert!(matches!(Journal::open(folder.path()), Err(JournalError::NotAJournal { .. })));
-        let mut later = header();
+        let mut later = header(VERSION);
         drop(Journal::open(&folder.path().join("blank.journal")).unwrap());
         assert!(!folder.path().join("blank.journal").exists(), "nothing was recorded");
         later[MAGIC.len()] = 9;

@@ -9,12 +9,14 @@
 //! | 8 | seconds that the run took |
 //! | 4, 8 r | number r of inputs, their values x in physical units |
 //! | 1 | status: 0 answered, 1 failed, 2 failed by circumstances |
-//! | … | answered: number of eigenvalues (u32), Re λ and Im λ of each, then the derivatives: 0 none, 1 modes could not be separated, 2 reduced |
-//! | … | with 1 and 2: number m of modes (u32), their ranks (u32 each) |
-//! | … | with 2: T and D_1 … D_r, m × m complex numbers each, by columns |
+//! | … | answered: number of eigenvalues (u32), Re λ and Im λ of each, then the derivatives: 0 none, 3 reduced; in version 1 also 1 and 2 |
+//! | … | with 3: number of modes of interest (u32), their ranks (u32 each), number of reduced systems (u32) |
+//! | … | each system: numbers m of its eigenvalues and n of states (u32 each), the eigenvalues, T and D_1 … D_r, m × m complex numbers each, right eigenvectors, n × m, left eigenvectors, m × n, all by columns |
+//! | … | with 1, modes could not be separated, and 2, reduced: number m of modes (u32), their ranks (u32 each) |
+//! | … | with 2: T and D_1 … D_r, m × m complex numbers each, by columns. What 1 and 2 say is not used any more |
 //! | … | failed: number of attempts (u32), length (u32) and UTF-8 text of the cause |
 
-use crate::mechanics::spectrum::{Computation, ReducedSystem, Reduction};
+use crate::mechanics::spectrum::{Computation, ReducedSystem, Reductions};
 use nalgebra::{Complex, DMatrix};
 
 /// Bytes of the hash that names a model.
@@ -22,6 +24,12 @@ pub const HASH_BYTES: usize = 32;
 
 /// Length and CRC before a body.
 pub(super) const FRAME_HEAD: usize = 8;
+
+/// What follows the eigenvalues of an answer.
+const NO_DERIVATIVES: u8 = 0;
+const INSEPARABLE_V1: u8 = 1;
+const REDUCED_V1: u8 = 2;
+const REDUCED: u8 = 3;
 
 /// A body of more bytes is no record: 1000 modes with 50 derivatives fit.
 pub(super) const LARGEST_BODY: usize = 1 << 30;
@@ -133,17 +141,20 @@ fn put_complex(bytes: &mut Vec<u8>, value: Complex<f64>) {
 fn put_computation(bytes: &mut Vec<u8>, computation: &Computation) {
     put_count(bytes, computation.eigenvalues.len());
     computation.eigenvalues.iter().for_each(|&lambda| put_complex(bytes, lambda));
-    let kind = match computation.reduction {
-        None => 0,
-        Some(Reduction::Inseparable(_)) => 1,
-        Some(Reduction::Reduced(_)) => 2,
+    let Some(Reductions { modes, systems }) = &computation.reductions else {
+        bytes.push(NO_DERIVATIVES);
+        return;
     };
-    bytes.push(kind);
-    let Some(reduction) = &computation.reduction else { return };
-    put_count(bytes, reduction.modes().len());
-    reduction.modes().iter().for_each(|&mode| put_count(bytes, mode));
-    if let Some(system) = reduction.system() {
+    bytes.push(REDUCED);
+    put_count(bytes, modes.len());
+    modes.iter().for_each(|&mode| put_count(bytes, mode));
+    put_count(bytes, systems.len());
+    for system in systems {
+        put_count(bytes, system.eigenvalues().len());
+        put_count(bytes, system.right().nrows());
+        system.eigenvalues().iter().for_each(|&lambda| put_complex(bytes, lambda));
         let matrices = std::iter::once(system.state_matrix()).chain(system.derivatives());
+        let matrices = matrices.chain([system.right(), system.left()]);
         matrices.flat_map(|matrix| matrix.iter()).for_each(|&entry| put_complex(bytes, entry));
     }
 }
@@ -207,29 +218,50 @@ impl<'a> Reader<'a> {
     fn computation(&mut self, inputs: usize) -> Option<Computation> {
         let count = self.count()?;
         let eigenvalues = self.complex(count)?;
-        let kind = self.byte()?;
-        let reduction = match kind {
-            0 => None,
-            1 | 2 => Some(self.reduction(kind, inputs)?),
+        let reductions = match self.byte()? {
+            NO_DERIVATIVES => None,
+            REDUCED => Some(self.reductions(inputs)?),
+            kind @ (INSEPARABLE_V1 | REDUCED_V1) => {
+                self.skip_version_1(kind, inputs)?;
+                None
+            }
             _ => return None,
         };
-        Some(Computation { eigenvalues, reduction })
+        Some(Computation { eigenvalues, reductions })
     }
 
-    fn reduction(&mut self, kind: u8, inputs: usize) -> Option<Reduction> {
+    fn counts(&mut self) -> Option<Vec<usize>> {
         let count = self.count()?;
         if count.checked_mul(4)? > self.bytes.len() {
             return None;
         }
-        let modes: Vec<usize> = (0..count).map(|_| self.count()).collect::<Option<_>>()?;
-        if kind == 1 {
-            return Some(Reduction::Inseparable(modes));
-        }
-        let entries = count.checked_mul(count)?;
-        let mut matrix = || Some(DMatrix::from_vec(count, count, self.complex(entries)?));
-        let state_matrix = matrix()?;
-        let derivatives = (0..inputs).map(|_| matrix()).collect::<Option<_>>()?;
-        Some(Reduction::Reduced(ReducedSystem::from_parts(modes, state_matrix, derivatives)?))
+        (0..count).map(|_| self.count()).collect()
+    }
+
+    fn matrix(&mut self, rows: usize, columns: usize) -> Option<DMatrix<Complex<f64>>> {
+        Some(DMatrix::from_vec(rows, columns, self.complex(rows.checked_mul(columns)?)?))
+    }
+
+    fn reductions(&mut self, inputs: usize) -> Option<Reductions> {
+        let modes = self.counts()?;
+        let count = self.count()?;
+        let systems = (0..count).map(|_| self.system(inputs)).collect::<Option<_>>()?;
+        Some(Reductions { modes, systems })
+    }
+
+    fn system(&mut self, inputs: usize) -> Option<ReducedSystem> {
+        let (count, states) = (self.count()?, self.count()?);
+        let eigenvalues = self.complex(count)?;
+        let state_matrix = self.matrix(count, count)?;
+        let derivatives = (0..inputs).map(|_| self.matrix(count, count)).collect::<Option<_>>()?;
+        let (right, left) = (self.matrix(states, count)?, self.matrix(count, states)?);
+        ReducedSystem::from_parts(eigenvalues, state_matrix, derivatives, right, left)
+    }
+
+    fn skip_version_1(&mut self, kind: u8, inputs: usize) -> Option<()> {
+        let count = self.counts()?.len();
+        let matrices = if kind == REDUCED_V1 { 1 + inputs } else { 0 };
+        self.take(count.checked_mul(count)?.checked_mul(16)?.checked_mul(matrices)?).map(|_| ())
     }
 }
 
@@ -242,16 +274,19 @@ mod tests {
         let lambda = Complex::new(-0.1, 1.0 / 3.0);
         let matrix = |value: f64| DMatrix::from_element(2, 2, Complex::new(value, -value));
         let derivatives = vec![matrix(2.0); point.len()];
-        let system = ReducedSystem::from_parts(vec![1, 2], matrix(0.1), derivatives).unwrap();
-        let reduction = Some(Reduction::Reduced(system));
-        let outcome = RunOutcome::Answered(Computation { eigenvalues: vec![lambda, lambda.conj()], reduction });
+        let vectors = |rows, columns| DMatrix::from_fn(rows, columns, |i, j| Complex::new(i as f64, j as f64));
+        let eigenvalues = vec![lambda, lambda.conj()];
+        let system =
+            ReducedSystem::from_parts(eigenvalues.clone(), matrix(0.1), derivatives, vectors(3, 2), vectors(2, 3));
+        let reductions = Some(Reductions { modes: vec![1], systems: vec![system.unwrap()] });
+        let outcome = RunOutcome::Answered(Computation { eigenvalues, reductions });
         Record { model: [7; HASH_BYTES], point: point.to_vec(), outcome, seconds: 0.25 }
     }
 
     fn kinds() -> Vec<Record> {
         let full = record(&[0.1, -2e300]);
-        let with = |reduction| Record {
-            outcome: RunOutcome::Answered(Computation { eigenvalues: vec![Complex::new(1.0, 2.0)], reduction }),
+        let with = |reductions| Record {
+            outcome: RunOutcome::Answered(Computation { eigenvalues: vec![Complex::new(1.0, 2.0)], reductions }),
             ..full.clone()
         };
         let failed = |by_circumstances| {
@@ -260,12 +295,31 @@ mod tests {
         };
         vec![
             with(None),
-            with(Some(Reduction::Inseparable(vec![3, 4]))),
+            with(Some(Reductions { modes: vec![3, 4], systems: Vec::new() })),
             failed(false),
             failed(true),
             Record { point: Vec::new(), ..record(&[]) },
             full,
         ]
+    }
+
+    /// What version 1 said of derivatives is passed over.
+    #[test]
+    fn records_of_version_1_are_read() {
+        let full = record(&[0.1, -2e300]);
+        let RunOutcome::Answered(computation) = full.outcome.clone() else { panic!() };
+        for (kind, rest) in [(INSEPARABLE_V1, 0), (REDUCED_V1, 3 * 4 * 16)] {
+            let plain = RunOutcome::Answered(Computation { reductions: None, ..computation.clone() });
+            let record = Record { outcome: plain, ..full.clone() };
+            let mut body = record.frame().unwrap()[FRAME_HEAD..].to_vec();
+            body.pop();
+            body.push(kind);
+            [2u32, 3, 4].iter().for_each(|count| body.extend_from_slice(&count.to_le_bytes()));
+            body.extend(vec![0; rest]);
+            let length = (body.len() as u32).to_le_bytes();
+            let bytes = [&length[..], &checksum(&length, &body).to_le_bytes(), &body].concat();
+            assert_eq!(Record::read(&bytes), Some((record, bytes.len())), "{kind}");
+        }
     }
 
     #[test]

@@ -303,6 +303,11 @@ impl FitMethod {
         self.profile().max_degree
     }
 
+    /// Whether it takes every design, however small, and says how well it predicts runs left out.
+    pub fn fits_every_design(&self) -> bool {
+        matches!(self, Self::Auto(_) | Self::MinimumNorm(_) | Self::Omp(_))
+    }
+
     /// Whether coefficients are integrals over a tensor Gauss rule.
     pub fn is_quadrature(&self) -> bool {
         matches!(self.profile().design, Design::Quadrature | Design::QuadraturePerElement)

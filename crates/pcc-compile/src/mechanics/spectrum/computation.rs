@@ -1,7 +1,14 @@
-//! What one run of a model gave, before it is known which modes a study groups.
+//! What one run of a model gave, before it is known which eigenvalues a study groups.
 
 use super::derivatives::ReducedSystem;
-use nalgebra::Complex;
+use super::labels::Vectors;
+use super::modes::Spectrum;
+use crate::numerics::eigenvalues::SchurForm;
+use nalgebra::{Complex, DMatrix};
+use pcc_evaluate::components::OutputKind;
+
+/// Of larger systems a list of modes is reduced alone: what reordering a Schur form costs grows as the third power.
+const MOST_FOLLOWED: usize = 100;
 
 /// The answer of one direct computation.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,32 +16,54 @@ pub struct Computation {
     /// Eigenvalues λ, in 1/s, as the model gave them: all of them, or those it was asked for.
     pub eigenvalues: Vec<Complex<f64>>,
     /// The system with its derivatives, if they were asked for.
-    pub reduction: Option<Reduction>,
+    pub reductions: Option<Reductions>,
 }
 
-/// What became of the derivatives of a run.
+/// The state matrix and its derivatives on invariant subspaces: of the modes of interest, and of all eigenvalues where
+/// those are not all or cannot be separated. Empty if nothing can be separated from rigid-body motion.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Reduction {
-    /// The modes with these frequency ranks cannot be separated from the rest of the spectrum.
-    Inseparable(Vec<usize>),
-    /// The system on the invariant subspace of its modes.
-    Reduced(ReducedSystem),
+pub struct Reductions {
+    /// Frequency ranks of the modes of interest, from 1.
+    pub modes: Vec<usize>,
+    /// The systems, that of the modes of interest first.
+    pub systems: Vec<ReducedSystem>,
 }
 
-impl Reduction {
-    /// Frequency ranks of the modes that it is about, from 1.
-    pub fn modes(&self) -> &[usize] {
-        match self {
-            Self::Inseparable(modes) => modes,
-            Self::Reduced(system) => system.modes(),
+impl Reductions {
+    /// Reduces the system of a Schur form, with the derivatives of the state matrix by each input in physical units.
+    /// The modes of interest have the frequency ranks `modes`.
+    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], modes: Vec<usize>) -> Self {
+        let found = schur.eigenvalues();
+        let Ok(spectrum) = Spectrum::new(&found) else { return Self { modes, systems: Vec::new() } };
+        let of_interest: Vec<Complex<f64>> = modes.iter().filter_map(|&mode| spectrum.mode(mode).ok()).collect();
+        let reduce = |lambdas: &[Complex<f64>]| match lambdas.is_empty() {
+            true => None,
+            false => ReducedSystem::new(schur, derivatives, lambdas),
+        };
+        let mut systems: Vec<ReducedSystem> = reduce(&of_interest).into_iter().collect();
+        let is_all = 2 * of_interest.len() == spectrum.eigenvalues().len();
+        if systems.is_empty() || (!is_all && spectrum.eigenvalues().len() <= MOST_FOLLOWED) {
+            // The numbers of the solver, where the spectrum has made real what is nearly so.
+            let rigid = spectrum.rigid_body_modes();
+            let mut by_size: Vec<usize> = (0..found.len()).collect();
+            by_size.sort_by(|&a, &b| found[a].norm().total_cmp(&found[b].norm()).then(a.cmp(&b)));
+            let mut kept: Vec<usize> = by_size.into_iter().skip(rigid).collect();
+            // In the order of the Schur form, so that little of it has to change places.
+            kept.sort_unstable();
+            let all: Vec<Complex<f64>> = kept.into_iter().map(|at| found[at]).collect();
+            systems.extend(reduce(&all));
         }
+        Self { modes, systems }
     }
 
-    /// The system, unless its modes could not be separated.
-    pub fn system(&self) -> Option<&ReducedSystem> {
-        match self {
-            Self::Inseparable(_) => None,
-            Self::Reduced(system) => Some(system),
-        }
+    /// The derivatives of the components of a group ([`ReducedSystem::differentiate`]), from the first system that has
+    /// them.
+    pub fn differentiate(&self, kind: OutputKind, eigenvalues: &[Complex<f64>]) -> Option<Vec<Vec<f64>>> {
+        self.systems.iter().find_map(|system| system.differentiate(kind, eigenvalues))
+    }
+
+    /// Right and left eigenvectors of all eigenvalues of a spectrum; `None` if some are not known.
+    pub fn vectors(&self, spectrum: &Spectrum) -> Option<Vectors> {
+        self.systems.iter().find_map(|system| Vectors::new(system, spectrum))
     }
 }

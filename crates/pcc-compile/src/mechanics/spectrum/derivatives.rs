@@ -9,46 +9,56 @@
 //! All of this is regular where the eigenvalues of the group coalesce; only groups that come close to other eigenvalues
 //! have no P.
 //!
-//! Which modes form groups is known after all runs. Until then a run keeps the state matrix and its derivatives on the
-//! invariant subspace of all modes of interest: for m modes T = WAV and D_j = W ∂A/∂x_j V, m × m each, with P = VPʹW
-//! and the projector Pʹ of the group within T.
+//! Groups that are closed under conjugation have the elementary symmetric functions e_m instead (`closed_slopes`).
+//!
+//! Which eigenvalues form groups is known after all runs. Until then a run keeps the state matrix and its derivatives
+//! on the invariant subspace of all eigenvalues of interest: for m of them T = WAV and D_j = W ∂A/∂x_j V, m × m each,
+//! with P = VPʹW and the projector Pʹ of the group within T. It keeps right and left eigenvectors, too, by which
+//! eigenvalues are followed from run to run.
 
-use super::modes::Spectrum;
+use super::closed_slopes::closed_slopes;
 use crate::numerics::eigenvalues::SchurForm;
 use crate::numerics::invariant_subspace::Subspace;
 use nalgebra::{Complex, DMatrix};
-use pcc_evaluate::components::Output;
+use pcc_evaluate::components::OutputKind;
 
-/// The state matrix and its derivatives on the invariant subspace of some modes.
+/// The state matrix and its derivatives on the invariant subspace of some eigenvalues.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedSystem {
-    /// Frequency ranks, from 1.
-    modes: Vec<usize>,
-    /// T, upper triangular with the eigenvalues of the modes on its diagonal.
+    /// The eigenvalues, as the solver gave them.
+    eigenvalues: Vec<Complex<f64>>,
+    /// T, upper triangular with the eigenvalues on its diagonal.
     state_matrix: DMatrix<Complex<f64>>,
     /// D_j, one per input.
     derivatives: Vec<DMatrix<Complex<f64>>>,
+    /// Right eigenvectors, one per column.
+    right: DMatrix<Complex<f64>>,
+    /// Left eigenvectors, one per row, biorthonormal to the right ones.
+    left: DMatrix<Complex<f64>>,
 }
 
 impl ReducedSystem {
-    /// The system of these parts: frequency ranks from 1, T, and one derivative per input. `None` if their sizes do not
-    /// fit together.
+    /// The system of these parts: m eigenvalues, T, one derivative per input, right eigenvectors in columns and left
+    /// ones in rows. `None` if their sizes do not fit together.
     pub fn from_parts(
-        modes: Vec<usize>,
+        eigenvalues: Vec<Complex<f64>>,
         state_matrix: DMatrix<Complex<f64>>,
         derivatives: Vec<DMatrix<Complex<f64>>>,
+        right: DMatrix<Complex<f64>>,
+        left: DMatrix<Complex<f64>>,
     ) -> Option<Self> {
-        let shape = (modes.len(), modes.len());
-        let fits = std::iter::once(&state_matrix).chain(&derivatives).all(|matrix| matrix.shape() == shape);
-        fits.then_some(Self { modes, state_matrix, derivatives })
+        let count = eigenvalues.len();
+        let are_square = std::iter::once(&state_matrix).chain(&derivatives).all(|m| m.shape() == (count, count));
+        let fits = are_square && right.ncols() == count && left.shape() == (count, right.nrows());
+        fits.then_some(Self { eigenvalues, state_matrix, derivatives, right, left })
     }
 
-    /// Frequency ranks of its modes, from 1.
-    pub fn modes(&self) -> &[usize] {
-        &self.modes
+    /// Its eigenvalues.
+    pub fn eigenvalues(&self) -> &[Complex<f64>] {
+        &self.eigenvalues
     }
 
-    /// T, upper triangular with the eigenvalues of the modes on its diagonal, in 1/s.
+    /// T, upper triangular with the eigenvalues on its diagonal, in 1/s.
     pub fn state_matrix(&self) -> &DMatrix<Complex<f64>> {
         &self.state_matrix
     }
@@ -58,47 +68,98 @@ impl ReducedSystem {
         &self.derivatives
     }
 
-    /// Reduces a system to the modes with the given ranks. `derivatives` are those of the state matrix by each input,
-    /// in physical units; `spectrum` are the modes of `schur`.
+    /// Right eigenvectors, one per column, in the order of the eigenvalues.
+    pub fn right(&self) -> &DMatrix<Complex<f64>> {
+        &self.right
+    }
+
+    /// Left eigenvectors, one per row.
+    pub fn left(&self) -> &DMatrix<Complex<f64>> {
+        &self.left
+    }
+
+    /// Reduces a system to some of its eigenvalues, which are numbers of the Schur form itself. `derivatives` are those
+    /// of the state matrix by each input, in physical units.
     ///
-    /// `None` if the modes cannot be separated from the rest of the spectrum ([`Subspace::is_separated`]), or one of
-    /// them does not exist.
-    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], spectrum: &Spectrum, modes: &[usize]) -> Option<Self> {
-        let lambdas = schur.eigenvalues();
-        let mut positions: Vec<usize> = Vec::with_capacity(modes.len());
-        for &mode in modes {
-            // The spectrum holds the very numbers of the Schur form.
-            let wanted = spectrum.mode(mode).ok()?;
-            let position = (0..lambdas.len()).find(|at| lambdas[*at] == wanted && !positions.contains(at))?;
-            positions.push(position);
+    /// `None` if the eigenvalues cannot be separated from the rest of the spectrum ([`Subspace::is_separated`]), or one
+    /// of them does not exist.
+    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], eigenvalues: &[Complex<f64>]) -> Option<Self> {
+        let subspace = schur.subspace(&positions(&schur.eigenvalues(), eigenvalues)?);
+        if !subspace.is_separated() {
+            return None;
         }
-        let subspace = schur.subspace(&positions);
-        subspace.is_separated().then(|| Self {
-            modes: modes.to_vec(),
+        let (vectors, inverse) = eigenvectors(&subspace.restricted);
+        Some(Self {
+            eigenvalues: eigenvalues.to_vec(),
             derivatives: reduced_derivatives(&subspace, derivatives),
+            right: &subspace.right * vectors,
+            left: inverse * &subspace.left,
             state_matrix: subspace.restricted,
         })
     }
 
-    /// The derivatives of the mean s and the coefficients c_{k−2}, …, c_0 of a group of modes, one list per input;
-    /// `None` if the group cannot be separated from the other modes.
-    fn slopes(&self, group: &[usize]) -> Option<Vec<Vec<Complex<f64>>>> {
-        let position = |mode: &usize| self.modes.iter().position(|known| known == mode);
-        let positions: Vec<usize> = group.iter().map(position).collect::<Option<_>>()?;
-        let subspace = Subspace::of_triangular(self.state_matrix.clone(), &positions);
-        let slopes =
-            |derivative| invariant_slopes(&subspace.restricted, &(&subspace.left * derivative * &subspace.right));
-        let found: Vec<Vec<Complex<f64>>> = self.derivatives.iter().map(slopes).collect();
-        let is_finite = found.iter().flatten().all(|slope| slope.re.is_finite() && slope.im.is_finite());
+    /// The derivatives of the components of a group of this kind, in their order, by each input in physical units: one
+    /// list per input. The group has these `eigenvalues`, and those of closed groups with their conjugates; a system
+    /// without conjugates takes them as known.
+    ///
+    /// `None` if the group is not among the eigenvalues, or cannot be separated from the others to eight digits.
+    pub fn differentiate(&self, kind: OutputKind, eigenvalues: &[Complex<f64>]) -> Option<Vec<Vec<f64>>> {
+        let is_half = kind == OutputKind::Closed && self.eigenvalues.iter().all(|lambda| lambda.im > 0.0);
+        let group: Vec<Complex<f64>> = match is_half {
+            true if eigenvalues.iter().any(|lambda| lambda.im == 0.0) => return None,
+            true => eigenvalues.iter().filter(|lambda| lambda.im > 0.0).copied().collect(),
+            false => eigenvalues.to_vec(),
+        };
+        let subspace = Subspace::of_triangular(self.state_matrix.clone(), &positions(&self.eigenvalues, &group)?);
+        let slopes = |derivative| {
+            let derivative = &subspace.left * derivative * &subspace.right;
+            match kind {
+                OutputKind::Closed => closed_slopes(&subspace.restricted, &derivative, is_half),
+                OutputKind::Eigenvalue | OutputKind::Cluster => {
+                    let parts = invariant_slopes(&subspace.restricted, &derivative);
+                    parts.iter().flat_map(|slope| [slope.re, slope.im]).collect()
+                }
+            }
+        };
+        let found: Vec<Vec<f64>> = self.derivatives.iter().map(slopes).collect();
+        let is_finite = found.iter().flatten().all(|slope| slope.is_finite());
         (subspace.is_separated() && is_finite).then_some(found)
     }
+}
 
-    /// The derivatives of the components of `output`, in their order, by each input in physical units: one list per
-    /// input. `None` if its modes cannot be separated from the rest of the spectrum to eight digits.
-    pub fn differentiate(&self, output: &Output) -> Option<Vec<Vec<f64>>> {
-        let parts = self.slopes(&output.modes)?;
-        Some(parts.iter().map(|by_input| by_input.iter().flat_map(|slope| [slope.re, slope.im]).collect()).collect())
+/// Where `wanted` are among `all`, each at a position of its own.
+fn positions(all: &[Complex<f64>], wanted: &[Complex<f64>]) -> Option<Vec<usize>> {
+    let mut positions: Vec<usize> = Vec::with_capacity(wanted.len());
+    for lambda in wanted {
+        let position = (0..all.len()).find(|at| all[*at] == *lambda && !positions.contains(at))?;
+        positions.push(position);
     }
+    Some(positions)
+}
+
+/// The eigenvectors of an upper triangular matrix, one per column, and their inverse. Of eigenvalues that coalesce they
+/// are nearly parallel, and their inverse is large.
+fn eigenvectors(triangular: &DMatrix<Complex<f64>>) -> (DMatrix<Complex<f64>>, DMatrix<Complex<f64>>) {
+    let size = triangular.nrows();
+    let smallest = f64::EPSILON * triangular.norm().max(f64::MIN_POSITIVE);
+    let divisor = |difference: Complex<f64>| match difference.norm() < smallest {
+        true => Complex::new(smallest, 0.0),
+        false => difference,
+    };
+    let mut vectors = DMatrix::<Complex<f64>>::identity(size, size);
+    for k in 0..size {
+        for i in (0..k).rev() {
+            let known: Complex<f64> = (i + 1..=k).map(|l| triangular[(i, l)] * vectors[(l, k)]).sum();
+            vectors[(i, k)] = known / divisor(triangular[(k, k)] - triangular[(i, i)]);
+        }
+    }
+    let mut inverse = DMatrix::<Complex<f64>>::identity(size, size);
+    for k in 0..size {
+        for i in (0..k).rev() {
+            inverse[(i, k)] = -(i + 1..=k).map(|l| vectors[(i, l)] * inverse[(l, k)]).sum::<Complex<f64>>();
+        }
+    }
+    (vectors, inverse)
 }
 
 /// W D_j V for real D_j.
@@ -118,7 +179,10 @@ fn reduced_derivatives(subspace: &Subspace, derivatives: &[DMatrix<f64>]) -> Vec
 }
 
 /// ds, dc_{k−2}, …, dc_0 for T of a group and W dA V of one input.
-fn invariant_slopes(state_matrix: &DMatrix<Complex<f64>>, derivative: &DMatrix<Complex<f64>>) -> Vec<Complex<f64>> {
+pub(super) fn invariant_slopes(
+    state_matrix: &DMatrix<Complex<f64>>,
+    derivative: &DMatrix<Complex<f64>>,
+) -> Vec<Complex<f64>> {
     let size = state_matrix.nrows();
     let mean = state_matrix.trace() / size as f64;
     let mean_slope = derivative.trace() / size as f64;
@@ -151,9 +215,8 @@ fn invariant_slopes(state_matrix: &DMatrix<Complex<f64>>, derivative: &DMatrix<C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::spectrum::{Target, decompose};
+    use crate::mechanics::spectrum::{Spectrum, components_of};
     use nalgebra::dmatrix;
-    use pcc_evaluate::components::{Component, OutputKind};
 
     /// Central differences with a step of 1e-5 are good to some 1e-9.
     const DIFFERENCES: f64 = 1e-7;
@@ -177,33 +240,58 @@ mod tests {
         state
     }
 
+    fn spectrum(x: f64) -> Spectrum {
+        Spectrum::new(&SchurForm::new(state_matrix(x)).unwrap().eigenvalues()).unwrap()
+    }
+
     #[test]
     fn slopes_are_those_of_differences_for_every_grouping() {
         let x = 0.7;
-        let (schur, spectrum) = (SchurForm::new(state_matrix(x)).unwrap(), |x: f64| {
-            Spectrum::new(&SchurForm::new(state_matrix(x)).unwrap().eigenvalues()).unwrap()
-        });
-        let system = ReducedSystem::new(&schur, &[derivative(x)], &spectrum(x), &[1, 2, 3]).unwrap();
+        let schur = SchurForm::new(state_matrix(x)).unwrap();
+        let half = ReducedSystem::new(&schur, &[derivative(x)], spectrum(x).oscillating()).unwrap();
+        let full = ReducedSystem::new(&schur, &[derivative(x)], spectrum(x).eigenvalues()).unwrap();
         // By the distances between modes each grouping is what invariants of these lists would be.
-        for group in [vec![1], vec![2], vec![3], vec![1, 2], vec![2, 3], vec![1, 2, 3]] {
-            let kind = if group.len() == 1 { OutputKind::Eigenvalue } else { OutputKind::Cluster };
-            let mut output = Target::Eigenvalues.outputs(&[1], &[spectrum(x)]).unwrap().remove(0);
-            output.components =
-                (0..2 * group.len()).map(|id| Component { id, name: String::new(), center: 0.0, scale: 1.0 }).collect();
-            (output.kind, output.modes) = (kind, group.clone());
-            let values = |x: f64| {
-                let mut values = vec![0.0; output.components.len()];
-                decompose(&output, &spectrum(x), &mut values).unwrap();
-                values
-            };
-            let found = system.differentiate(&output).unwrap().remove(0);
-            for ((slope, above), below) in found.iter().zip(values(x + STEP)).zip(values(x - STEP)) {
-                let difference = (above - below) / (2.0 * STEP);
-                assert!(
-                    (slope - difference).abs() < DIFFERENCES * (1.0 + slope.abs()),
-                    "{group:?}: {slope} {difference}"
-                );
+        for group in [vec![0], vec![1], vec![2], vec![0, 1], vec![1, 2], vec![0, 1, 2]] {
+            for kind in [OutputKind::Eigenvalue, OutputKind::Cluster, OutputKind::Closed] {
+                if (kind == OutputKind::Eigenvalue) != (group.len() == 1) && kind != OutputKind::Closed {
+                    continue;
+                }
+                let lambdas = |x: f64| {
+                    let spectrum = spectrum(x);
+                    let of_mode = |&mode: &usize| spectrum.oscillating()[mode];
+                    let conjugate = |lambda: Complex<f64>| match kind {
+                        OutputKind::Closed => vec![lambda, lambda.conj()],
+                        _ => vec![lambda],
+                    };
+                    group.iter().map(of_mode).flat_map(conjugate).collect::<Vec<_>>()
+                };
+                let values = |x: f64| components_of(kind, &lambdas(x));
+                for system in [&half, &full] {
+                    let found = system.differentiate(kind, &lambdas(x)).unwrap().remove(0);
+                    for ((slope, above), below) in found.iter().zip(values(x + STEP)).zip(values(x - STEP)) {
+                        let difference = (above - below) / (2.0 * STEP);
+                        // Differences of large numbers lose digits.
+                        let rounding = f64::EPSILON * above.abs() / STEP;
+                        assert!(
+                            (slope - difference).abs() < DIFFERENCES * (1.0 + slope.abs()) + 10.0 * rounding,
+                            "{kind:?} {group:?}: {slope} {difference}"
+                        );
+                    }
+                }
             }
+        }
+    }
+
+    #[test]
+    fn eigenvectors_are_biorthonormal_and_those_of_the_matrix() {
+        let schur = SchurForm::new(state_matrix(0.3)).unwrap();
+        let system = ReducedSystem::new(&schur, &[], spectrum(0.3).eigenvalues()).unwrap();
+        let matrix = state_matrix(0.3).map(|entry| Complex::new(entry, 0.0));
+        let product = system.left() * system.right();
+        assert!((product - DMatrix::identity(6, 6)).norm() < 1e-11);
+        for (k, lambda) in system.eigenvalues().iter().enumerate() {
+            let right = system.right().column(k);
+            assert!((&matrix * right - right * *lambda).norm() < 1e-10 * right.norm());
         }
     }
 
@@ -215,10 +303,12 @@ mod tests {
         state.view_mut((2, 0), (2, 2)).copy_from(&dmatrix![-100.0, 1.0; 0.0, -100.0]);
         let schur = SchurForm::new(state.clone()).unwrap();
         let spectrum = Spectrum::new(&schur.eigenvalues()).unwrap();
-        assert_eq!(ReducedSystem::new(&schur, &[state.clone()], &spectrum, &[1]), None);
-        let both = ReducedSystem::new(&schur, &[state], &spectrum, &[1, 2]).unwrap();
-        assert_eq!(both.slopes(&[1]), None);
-        assert!(both.slopes(&[1, 2]).is_some());
-        assert!(both.slopes(&[1, 3]).is_none(), "a mode that was not kept");
+        let modes = spectrum.oscillating();
+        assert_eq!(ReducedSystem::new(&schur, std::slice::from_ref(&state), &modes[..1]), None);
+        let both = ReducedSystem::new(&schur, &[state], modes).unwrap();
+        assert_eq!(both.differentiate(OutputKind::Eigenvalue, &modes[..1]), None);
+        assert!(both.differentiate(OutputKind::Cluster, modes).is_some());
+        let unknown = [modes[0], Complex::new(1.0, 2.0)];
+        assert!(both.differentiate(OutputKind::Cluster, &unknown).is_none(), "a mode that was not kept");
     }
 }

@@ -1,13 +1,18 @@
-//! Spectra: which eigenvalues are modes, in which order, which belong together, and their derivatives.
+//! Spectra: which eigenvalues are modes, how they are followed, which belong together, and their derivatives.
 
+mod closed_slopes;
 mod clusters;
 mod computation;
 mod derivatives;
+mod groups;
+mod labels;
 mod modes;
 mod target;
 
 pub use clusters::{ClusterError, clusters};
-pub use computation::{Computation, Reduction};
+pub use computation::{Computation, Reductions};
 pub use derivatives::ReducedSystem;
+pub use groups::{Group, Groups};
+pub use labels::{Labels, Vectors};
 pub use modes::{Spectrum, SpectrumError};
-pub use target::{Modes, Target, components, decompose};
+pub use target::{Modes, Numbers, Target, components, components_of, decompose, output, with_ids};

@@ -34,32 +34,137 @@ impl Target {
             Self::Eigenvalues => modes.iter().map(|&mode| vec![mode]).collect(),
             Self::Invariants => clusters(spectra, modes)?,
         };
-        let mut first_id = 0;
         let outputs = groups.into_iter().map(|group| {
-            let output = match group[..] {
-                [mode] => eigenvalue(mode, first_id),
-                _ => cluster(&group, radius(&group, spectra), first_id),
+            let of_group = |spectrum: &Spectrum| -> Vec<Complex<f64>> {
+                group.iter().filter_map(|&mode| spectrum.oscillating().get(mode - 1).copied()).collect()
             };
-            first_id += output.components.len();
-            output
+            let kind = if group.len() == 1 { OutputKind::Eigenvalue } else { OutputKind::Cluster };
+            let lambdas: Vec<Vec<Complex<f64>>> = spectra.iter().map(of_group).collect();
+            output(kind, &Numbers { modes: group, reals: Vec::new() }, &lambdas)
         });
-        Ok(outputs.collect())
+        Ok(with_ids(outputs.collect()))
     }
 }
 
-/// Writes the values of the components of `output` at one spectrum into `values`, by id: the inverse of
-/// [`Output::recombine`].
+/// What the eigenvalues of a group are called.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Numbers {
+    /// Numbers of its modes, from 1.
+    pub modes: Vec<usize>,
+    /// Numbers of its real eigenvalues that belong to no mode, from 1.
+    pub reals: Vec<usize>,
+}
+
+/// The output of a group, given its eigenvalues at every point of a design. Ids of its components count from 0.
+pub fn output(kind: OutputKind, numbers: &Numbers, lambdas: &[Vec<Complex<f64>>]) -> Output {
+    let Numbers { modes, reals } = numbers;
+    let (symbols, name): (Vec<(String, f64)>, _) = match kind {
+        OutputKind::Eigenvalue => (vec![("re".to_owned(), 1.0), ("im".to_owned(), 1.0)], format!("mode {}", modes[0])),
+        OutputKind::Cluster => {
+            let (size, radius) = (modes.len(), radius(lambdas));
+            let coefficients = (0..size - 1).rev().map(|m| (format!("c{m}"), radius.powi((size - m) as i32)));
+            let parts = std::iter::once(("s".to_owned(), 1.0)).chain(coefficients);
+            let both = |(symbol, scale): (String, f64)| ["re", "im"].map(|part| (format!("{part}_{symbol}"), scale));
+            (parts.flat_map(both).collect(), format!("modes {}", list(modes, ", ")))
+        }
+        OutputKind::Closed => closed_symbols(numbers, lambdas),
+    };
+    let names = |symbol: String| match (kind, modes.len(), reals.len()) {
+        // A real eigenvalue by itself is its own component.
+        (OutputKind::Closed, 0, 1) => symbol,
+        (OutputKind::Closed, ..) => format!("{symbol}_{}", closed_suffix(numbers)),
+        _ => format!("{symbol}_{}", list(modes, "_")),
+    };
+    let component = |(id, (symbol, scale))| Component { id, name: names(symbol), center: 0.0, scale };
+    Output {
+        kind,
+        modes: modes.clone(),
+        reals: reals.clone(),
+        name,
+        unit: "1/s".to_owned(),
+        components: symbols.into_iter().enumerate().map(component).collect(),
+    }
+}
+
+/// The symmetric functions e₁ … eₙ, each scaled by the power of the largest |λ| that has its unit.
+fn closed_symbols(numbers: &Numbers, lambdas: &[Vec<Complex<f64>>]) -> (Vec<(String, f64)>, String) {
+    let Numbers { modes, reals } = numbers;
+    if let ([], [real]) = (&modes[..], &reals[..]) {
+        return (vec![(format!("real_{real}"), 1.0)], format!("real_{real}"));
+    }
+    let size = lambdas.iter().flatten().map(|lambda| lambda.norm()).fold(0.0, f64::max);
+    let size = power_of_two(size);
+    let symbols = (1..=2 * modes.len() + reals.len()).map(|m| (format!("e{m}"), size.powi(m as i32)));
+    let modes_text = match modes.len() {
+        0 => None,
+        1 => Some(format!("mode {}", modes[0])),
+        _ => Some(format!("modes {}", list(modes, ", "))),
+    };
+    let reals = reals.iter().map(|number| format!("real_{number}"));
+    (symbols.collect(), modes_text.into_iter().chain(reals).collect::<Vec<_>>().join(", "))
+}
+
+fn closed_suffix(numbers: &Numbers) -> String {
+    let reals = numbers.reals.iter().map(|number| format!("real_{number}"));
+    numbers.modes.iter().map(usize::to_string).chain(reals).collect::<Vec<_>>().join("_")
+}
+
+fn list(numbers: &[usize], separator: &str) -> String {
+    numbers.iter().map(usize::to_string).collect::<Vec<_>>().join(separator)
+}
+
+/// The outputs with ids that count through all of them.
+pub fn with_ids(mut outputs: Vec<Output>) -> Vec<Output> {
+    for (id, component) in outputs.iter_mut().flat_map(|output| &mut output.components).enumerate() {
+        component.id = id;
+    }
+    outputs
+}
+
+/// The components of a group with these eigenvalues, in the order of its kind: the inverse of [`Output::recombine`].
+/// Closed groups come with their conjugates.
+pub fn components_of(kind: OutputKind, lambdas: &[Complex<f64>]) -> Vec<f64> {
+    let parts = match kind {
+        OutputKind::Eigenvalue => lambdas.to_vec(),
+        OutputKind::Cluster => invariants(lambdas),
+        OutputKind::Closed => return symmetric_functions(lambdas),
+    };
+    parts.iter().flat_map(|part| [part.re, part.im]).collect()
+}
+
+/// e₁, …, eₙ of eigenvalues that are closed under conjugation, by real factors: a pair is one quadratic.
+fn symmetric_functions(lambdas: &[Complex<f64>]) -> Vec<f64> {
+    // e_0, e_1, … of the factors so far.
+    let mut e = vec![1.0];
+    let mut times = |sum: f64, product: Option<f64>| {
+        let before = e.clone();
+        e.resize(before.len() + 1 + usize::from(product.is_some()), 0.0);
+        for (m, value) in before.iter().enumerate() {
+            e[m + 1] += sum * value;
+            if let Some(product) = product {
+                e[m + 2] += product * value;
+            }
+        }
+    };
+    for lambda in lambdas {
+        if lambda.im > 0.0 {
+            times(2.0 * lambda.re, Some(lambda.norm_sqr()));
+        } else if lambda.im == 0.0 {
+            times(lambda.re, None);
+        }
+    }
+    e.split_off(1)
+}
+
+/// Writes the values of the components of `output` at one spectrum into `values`, by id. Its modes are frequency ranks,
+/// so it is no closed group.
 ///
 /// # Errors
 ///
 /// [`SpectrumError::NoSuchMode`].
 pub fn decompose(output: &Output, spectrum: &Spectrum, values: &mut [f64]) -> Result<(), SpectrumError> {
     let lambdas: Vec<Complex<f64>> = output.modes.iter().map(|&mode| spectrum.mode(mode)).collect::<Result<_, _>>()?;
-    let parts = match output.kind {
-        OutputKind::Eigenvalue => lambdas,
-        OutputKind::Cluster => invariants(&lambdas),
-    };
-    let numbers = parts.iter().flat_map(|part| [part.re, part.im]);
+    let numbers = components_of(output.kind, &lambdas);
     output.components.iter().zip(numbers).for_each(|(component, number)| values[component.id] = number);
     Ok(())
 }
@@ -78,7 +183,7 @@ pub fn components(outputs: &[Output], spectrum: &Spectrum) -> Result<Vec<f64>, S
 /// The mean s of k eigenvalues, then the coefficients c_{k−2}, …, c_0 of Π(z − (λ_i − s)).
 ///
 /// Eigenvalues of a coalescing pair are accurate to √ε each, but their symmetric functions to ε.
-fn invariants(lambdas: &[Complex<f64>]) -> Vec<Complex<f64>> {
+pub(super) fn invariants(lambdas: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let mean = lambdas.iter().sum::<Complex<f64>>() / lambdas.len() as f64;
     if let [first, second] = lambdas[..] {
         let half = (first - second) * 0.5;
@@ -99,47 +204,17 @@ fn invariants(lambdas: &[Complex<f64>]) -> Vec<Complex<f64>> {
 }
 
 /// The largest |λ − s| of a group over a design, as a power of two: what scales its coefficients.
-fn radius(group: &[usize], spectra: &[Spectrum]) -> f64 {
-    let largest = spectra.iter().fold(0f64, |largest, spectrum| {
-        let lambdas = || group.iter().filter_map(|&mode| spectrum.oscillating().get(mode - 1));
-        let mean = lambdas().sum::<Complex<f64>>() / group.len() as f64;
-        lambdas().map(|lambda| (lambda - mean).norm()).fold(largest, f64::max)
-    });
-    if largest > 0.0 { largest.log2().ceil().exp2() } else { 1.0 }
-}
-
-fn eigenvalue(mode: usize, first_id: usize) -> Output {
-    let component =
-        |offset, part| Component { id: first_id + offset, name: format!("{part}_{mode}"), center: 0.0, scale: 1.0 };
-    Output {
-        kind: OutputKind::Eigenvalue,
-        modes: vec![mode],
-        name: format!("mode {mode}"),
-        unit: "1/s".to_owned(),
-        components: vec![component(0, "re"), component(1, "im")],
-    }
-}
-
-/// The coefficient of z^m is scaled by the power of the radius that has its unit.
-fn cluster(group: &[usize], radius: f64, first_id: usize) -> Output {
-    let modes: Vec<String> = group.iter().map(usize::to_string).collect();
-    let size = group.len();
-    let symbols = std::iter::once(("s".to_owned(), 1.0))
-        .chain((0..size - 1).rev().map(|m| (format!("c{m}"), radius.powi((size - m) as i32))));
-    let parts = symbols.flat_map(|(symbol, scale)| ["re", "im"].map(|part| (format!("{part}_{symbol}"), scale)));
-    let component = |(offset, (name, scale)): (usize, (String, f64))| Component {
-        id: first_id + offset,
-        name: format!("{name}_{}", modes.join("_")),
-        center: 0.0,
-        scale,
+fn radius(lambdas: &[Vec<Complex<f64>>]) -> f64 {
+    let at_point = |group: &Vec<Complex<f64>>| {
+        let mean = group.iter().sum::<Complex<f64>>() / group.len() as f64;
+        group.iter().map(|lambda| (lambda - mean).norm()).fold(0.0, f64::max)
     };
-    Output {
-        kind: OutputKind::Cluster,
-        modes: group.to_vec(),
-        name: format!("modes {}", modes.join(", ")),
-        unit: "1/s".to_owned(),
-        components: parts.enumerate().map(component).collect(),
-    }
+    power_of_two(lambdas.iter().map(at_point).fold(0.0, f64::max))
+}
+
+/// The smallest power of two that is not below; 1 for 0.
+fn power_of_two(size: f64) -> f64 {
+    if size > 0.0 { size.log2().ceil().exp2() } else { 1.0 }
 }
 
 /// Which modes a surrogate carries.
@@ -152,6 +227,14 @@ pub enum Modes {
 }
 
 impl Modes {
+    /// The ranks that are not beyond `count`.
+    pub fn up_to(&self, count: usize) -> Vec<usize> {
+        match self {
+            Self::All => (1..=count).collect(),
+            Self::Ranks(ranks) => ranks.iter().copied().filter(|&mode| mode <= count).collect(),
+        }
+    }
+
     /// The ranks, given how many modes oscillate.
     ///
     /// # Errors
@@ -181,7 +264,8 @@ mod tests {
     fn round_trip(lambdas: &[Complex<f64>]) -> (Vec<Complex<f64>>, Vec<Complex<f64>>) {
         let spectrum = Spectrum::new(lambdas).unwrap();
         let modes: Vec<usize> = (1..=lambdas.len()).collect();
-        let output = cluster(&modes, 1.0, 0);
+        let kind = if lambdas.len() == 1 { OutputKind::Eigenvalue } else { OutputKind::Cluster };
+        let output = output(kind, &Numbers { modes, reals: Vec::new() }, &[lambdas.to_vec()]);
         let mut values = vec![0.0; output.components.len()];
         decompose(&output, &spectrum, &mut values).unwrap();
         let mut found = Vec::new();

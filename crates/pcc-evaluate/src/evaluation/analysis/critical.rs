@@ -10,6 +10,8 @@
 //!    bisection, until a stable and an unstable value are less than 10⁻⁹ of the domain's width apart: the critical
 //!    value is the unstable one.
 //!
+//! All other changes of stability along the input are found in the same way ([`super::crossings`]).
+//!
 //! Instability that begins and ends inside one cell is missed, and among several crossings inside a cell any one can be
 //! found. Polynomials of degree up to some tens do not oscillate within such a cell, but max Re λ can rise above zero
 //! within one and fall again where it barely does so.
@@ -18,10 +20,12 @@
 //! equal bins, so memory does not depend on the number of samples.
 
 use super::bracket::{Bracket, End};
+use super::crossings::{Crossing, CrossingKey, Crossings};
+use crate::components::Label;
 use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
 use crate::evaluation::kernel::plan::Plan;
-use crate::evaluation::kernel::points::Evaluator;
+use crate::evaluation::kernel::points::{Evaluator, Top};
 use crate::evaluation::questions::region::Region;
 use crate::foundation::Observer;
 use crate::probability::inputs::{Marginal, Uniform};
@@ -34,7 +38,7 @@ use std::ops::Range;
 const GRID: u32 = 64;
 
 /// Bins of the counts: the resolution of quantiles is 10⁻⁴ of the domain's width.
-const BINS: usize = 10_000;
+pub(super) const BINS: usize = 10_000;
 
 /// Levels of the quantiles that reports show.
 pub const CRITICAL_LEVELS: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
@@ -53,12 +57,29 @@ pub struct CriticalValues {
     counts: Vec<u64>,
     /// All critical values, as shares of the domain's width above the lower bound.
     shares: Moments,
+    /// Every change of stability along the input.
+    crossings: Crossings,
+    labels: Vec<Label>,
 }
 
 impl CriticalValues {
-    fn new(samples: u64, domain: Uniform) -> Self {
-        let counts = vec![0; BINS];
-        Self { samples, never: 0, unstable_from_start: 0, domain, counts, shares: Moments::default() }
+    fn new(samples: u64, domain: Uniform, labels: Vec<Label>) -> Self {
+        Self {
+            samples,
+            never: 0,
+            unstable_from_start: 0,
+            domain,
+            counts: vec![0; BINS],
+            shares: Moments::default(),
+            crossings: Crossings::default(),
+            labels,
+        }
+    }
+
+    /// Every change of stability along the input, in order, with the mode and the kind of instability on its unstable
+    /// side.
+    pub fn crossings(&self) -> Vec<Crossing> {
+        self.crossings.list(&self.labels, self.domain)
     }
 
     /// The critical value that a share `level` ∈ \[0, 1\] of all samples does not exceed, in the input's own unit, to
@@ -113,6 +134,7 @@ impl CriticalValues {
         }
         self.shares.merge(&Moments::of(&vec![0.0; part.unstable_from_start as usize]));
         self.shares.merge(&Moments::of(&part.crossings));
+        self.crossings.add(&part.changes);
     }
 }
 
@@ -166,7 +188,7 @@ pub fn critical_values_in(
     let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
     let Marginal::Uniform(domain) = chosen.marginal;
     let plan = Plan::new(surrogate);
-    let mut values = CriticalValues::new(samples, domain);
+    let mut values = CriticalValues::new(samples, domain, surrogate.labels());
     in_chunks(
         samples,
         CHUNK,
@@ -184,18 +206,55 @@ struct Part {
     unstable_from_start: u64,
     /// Critical values above the lower bound, as shares of the domain's width.
     crossings: Vec<f64>,
+    /// Every change of stability, as a share of the domain's width.
+    changes: Vec<(CrossingKey, f64)>,
 }
 
-/// A sample of the chunk with the last point known to be stable.
-struct Stable {
-    sample: usize,
+/// A sample of the chunk with the last point of the grid and how often its stability has changed.
+#[derive(Clone, Copy)]
+struct Walking {
+    end: Point,
+    changes: u32,
+}
+
+/// A point of the input's domain with what decides there.
+#[derive(Clone, Copy)]
+struct Point {
     end: End,
+    top: Top,
 }
 
-/// A sample of the chunk with the interval in which it loses stability.
-struct Losing {
+impl Point {
+    fn is_stable(&self) -> bool {
+        self.end.max_re < 0.0
+    }
+}
+
+/// A sample of the chunk with an interval in which its stability changes.
+struct Changing {
     sample: usize,
+    order: u32,
+    loses: bool,
+    /// In coordinates that run from the stable to the unstable end: ξ where stability is lost, −ξ where it is regained.
     bracket: Bracket,
+    /// What decides at the unstable end.
+    top: Top,
+}
+
+impl Changing {
+    fn xi(&self, coordinate: f64) -> f64 {
+        if self.loses { coordinate } else { -coordinate }
+    }
+
+    /// The unstable end, as a share of the domain's width.
+    fn share(&self) -> f64 {
+        0.5 * (1.0 + self.xi(self.bracket.unstable.xi))
+    }
+
+    fn key(&self) -> CrossingKey {
+        let Top { position, frequency, .. } = self.top;
+        CrossingKey { order: self.order, loses: self.loses, position, is_real: frequency == 0.0 }
+    }
 }
 
 /// Searches chunks of samples, with memory of its own.
@@ -221,70 +280,78 @@ impl Search<'_> {
             }
         }
         let start: Vec<_> = (0..samples).map(|sample| (sample, grid_point(0))).collect();
-        let ends = self.evaluate(&start)?;
-        let stable: Vec<Stable> = ends
-            .into_iter()
-            .enumerate()
-            .filter(|(_, end)| end.max_re < 0.0)
-            .map(|(sample, end)| Stable { sample, end })
-            .collect();
-        let unstable_from_start = (samples - stable.len()) as u64;
-        let (never, mut losing) = self.march(stable, observer)?;
-        self.refine(&mut losing, observer)?;
-        let crossings = losing.iter().map(|losing| 0.5 * (1.0 + losing.bracket.unstable.xi)).collect();
-        Ok(Part { never, unstable_from_start, crossings })
+        let walking: Vec<Walking> = self.evaluate(&start)?.into_iter().map(|end| Walking { end, changes: 0 }).collect();
+        let starts_stable: Vec<bool> = walking.iter().map(|walking| walking.end.is_stable()).collect();
+        let unstable_from_start = starts_stable.iter().filter(|is_stable| !**is_stable).count() as u64;
+        let mut changing = self.march(walking, observer)?;
+        self.refine(&mut changing, observer)?;
+        // The first loss of those that were stable at the start.
+        let first_losses = changing.iter().filter(|changing| changing.order == 1 && starts_stable[changing.sample]);
+        let crossings: Vec<f64> = first_losses.map(Changing::share).collect();
+        let never = samples as u64 - unstable_from_start - crossings.len() as u64;
+        let changes = changing.iter().map(|changing| (changing.key(), changing.share())).collect();
+        Ok(Part { never, unstable_from_start, crossings, changes })
     }
 
-    /// Step 1: how many samples stay stable up to the upper bound, and the cells in which the others do not.
-    fn march(&mut self, mut stable: Vec<Stable>, observer: &dyn Observer) -> Result<(u64, Vec<Losing>), EvalError> {
-        let mut losing = Vec::with_capacity(stable.len());
+    /// Step 1: the cells of the grid in which stability changes.
+    fn march(&mut self, mut walking: Vec<Walking>, observer: &dyn Observer) -> Result<Vec<Changing>, EvalError> {
+        let mut changing = Vec::with_capacity(walking.len());
         for k in 1..=GRID {
             observer.check()?;
-            let trials: Vec<_> = stable.iter().map(|stable| (stable.sample, grid_point(k))).collect();
-            let ends = self.evaluate(&trials)?;
-            let mut still = Vec::with_capacity(stable.len());
-            for (Stable { sample, end: before }, end) in stable.into_iter().zip(ends) {
-                if end.max_re < 0.0 {
-                    still.push(Stable { sample, end });
-                } else {
-                    losing.push(Losing { sample, bracket: Bracket::new(before, end) });
+            let trials: Vec<_> = (0..walking.len()).map(|sample| (sample, grid_point(k))).collect();
+            let found = self.evaluate(&trials)?;
+            for (sample, (walking, end)) in walking.iter_mut().zip(found).enumerate() {
+                let before = std::mem::replace(&mut walking.end, end);
+                if before.is_stable() == end.is_stable() {
+                    continue;
                 }
+                walking.changes += 1;
+                let mirrored = |end: End| End { xi: -end.xi, ..end };
+                let loses = before.is_stable();
+                let (bracket, top) = match loses {
+                    true => (Bracket::new(before.end, end.end), end.top),
+                    false => (Bracket::new(mirrored(end.end), mirrored(before.end)), before.top),
+                };
+                changing.push(Changing { sample, order: walking.changes, loses, bracket, top });
             }
-            stable = still;
         }
-        Ok((stable.len() as u64, losing))
+        Ok(changing)
     }
 
     /// Step 2: narrows all brackets; each takes a bounded number of trials.
-    fn refine(&mut self, losing: &mut [Losing], observer: &dyn Observer) -> Result<(), EvalError> {
-        let mut open: Vec<&mut Losing> = losing.iter_mut().collect();
+    fn refine(&mut self, changing: &mut [Changing], observer: &dyn Observer) -> Result<(), EvalError> {
+        let mut open: Vec<&mut Changing> = changing.iter_mut().collect();
         while !open.is_empty() {
             observer.check()?;
-            let trials: Vec<_> = open.iter().map(|losing| (losing.sample, losing.bracket.trial())).collect();
-            for (losing, end) in open.iter_mut().zip(self.evaluate(&trials)?) {
-                losing.bracket.narrow(end);
+            let trials: Vec<_> = open.iter().map(|one| (one.sample, one.xi(one.bracket.trial()))).collect();
+            for (one, found) in open.iter_mut().zip(self.evaluate(&trials)?) {
+                one.bracket.narrow(End { xi: one.xi(found.end.xi), ..found.end });
+                if !found.is_stable() {
+                    one.top = found.top;
+                }
             }
-            open.retain(|losing| !losing.bracket.is_narrow());
+            open.retain(|one| !one.bracket.is_narrow());
         }
         Ok(())
     }
 
-    /// max Re λ of samples of the chunk with the input's standardized value set to that of the trial.
-    fn evaluate(&mut self, trials: &[(usize, f64)]) -> Result<Vec<End>, EvalError> {
+    /// What decides at samples of the chunk with the input's standardized value set to that of the trial.
+    fn evaluate(&mut self, trials: &[(usize, f64)]) -> Result<Vec<Point>, EvalError> {
         let (points, input) = (&self.points, self.input);
         let set_point = |(sample, xi): (usize, f64), point: &mut [f64]| {
             point.copy_from_slice(&points[sample * point.len()..(sample + 1) * point.len()]);
             point[input] = xi;
         };
         let mut found = Vec::with_capacity(trials.len());
-        self.evaluator.max_re(trials.len(), |number, point| set_point(trials[number], point), &mut found);
-        if let Some(at) = found.iter().position(|max_re| !max_re.is_finite()) {
+        self.evaluator.tops(trials.len(), |number, point| set_point(trials[number], point), &mut found);
+        if let Some(at) = found.iter().position(|top| !top.max_re.is_finite()) {
             let inputs = &self.surrogate.inputs;
             let mut point = vec![0.0; inputs.dimension()];
             set_point(trials[at], &mut point);
             return Err(EvalError::NotFinite { point: inputs.describe(&inputs.physical(&point)) });
         }
-        Ok(trials.iter().zip(found).map(|(&(_, xi), max_re)| End { xi, max_re }).collect())
+        let point = |(&(_, xi), top): (&(usize, f64), Top)| Point { end: End { xi, max_re: top.max_re }, top };
+        Ok(trials.iter().zip(found).map(point).collect())
     }
 }
 

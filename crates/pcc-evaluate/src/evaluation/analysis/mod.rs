@@ -3,5 +3,6 @@
 pub(super) mod bracket;
 pub(super) mod correlation;
 pub(super) mod critical;
+pub(super) mod crossings;
 pub(super) mod self_test;
 pub(super) mod sensitivity;

@@ -39,7 +39,7 @@ pub struct Plan {
     mesh: Mesh,
     outputs: Vec<Output>,
     dimension: usize,
-    modes: usize,
+    eigenvalues: usize,
     /// One per element.
     operations: Vec<Operations>,
 }
@@ -80,7 +80,7 @@ impl Plan {
             mesh: surrogate.mesh.clone(),
             outputs: surrogate.outputs.clone(),
             dimension: surrogate.inputs.dimension(),
-            modes: surrogate.modes().len(),
+            eigenvalues: surrogate.labels().len(),
             operations: elements.map(|element| Operations::new(surrogate, element)).collect(),
         }
     }
@@ -118,9 +118,10 @@ impl Plan {
             table: lanes(self.most(Operations::rows)),
             results: Results {
                 components: lanes(self.most(|program| program.constants.len())),
-                growth_rates: lanes(self.modes),
-                angular_frequencies: lanes(self.modes),
+                growth_rates: lanes(self.eigenvalues),
+                angular_frequencies: lanes(self.eigenvalues),
                 max_re: Lanes::splat(0.0),
+                top_frequency: Lanes::splat(1.0),
             },
         }
     }

@@ -46,7 +46,7 @@ impl<'a> Evaluator<'a> {
 
     /// An empty block with room for `samples`.
     pub fn block(&self, samples: usize) -> Block {
-        Block::with_capacity(self.surrogate.component_count(), self.surrogate.modes().len(), samples)
+        Block::with_capacity(self.surrogate.component_count(), self.surrogate.labels().len(), samples)
     }
 
     /// Evaluates `count` points. `fill` writes the standardized coordinates of the points from the given number on, one
@@ -78,6 +78,19 @@ impl<'a> Evaluator<'a> {
     pub fn max_re(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<f64>) {
         let fill = in_lanes(count, self.point.len(), set_point);
         self.each_block(count, fill, |results, lanes| list.extend_from_slice(&results.max_re.0[..lanes]));
+    }
+
+    /// Evaluates `count` points and appends what decides at each to `list`.
+    pub fn tops(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<Top>) {
+        let fill = in_lanes(count, self.point.len(), set_point);
+        self.each_block(count, fill, |results, lanes| {
+            for lane in 0..lanes {
+                let max_re = results.max_re.0[lane];
+                let position = results.growth_rates.iter().position(|re| re.0[lane] == max_re);
+                let frequency = results.top_frequency.0[lane];
+                list.push(Top { max_re, position: position.unwrap_or_default(), frequency });
+            }
+        });
     }
 
     /// Sorts the points by element, maps them to the local variables, and evaluates those of each element together.
@@ -149,6 +162,17 @@ impl<'a> Evaluator<'a> {
     }
 }
 
+/// The eigenvalue with the largest Re λ at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Top {
+    /// Its Re λ, in 1/s.
+    pub max_re: f64,
+    /// Its position among the surrogate's labels.
+    pub position: usize,
+    /// 0 if it is real.
+    pub frequency: f64,
+}
+
 /// Writes points that are set one by one into lanes.
 fn in_lanes(
     count: usize,
@@ -174,6 +198,7 @@ fn copy_lane(from: &Results, lane: usize, to: &mut Results, target: usize) {
         from.iter().zip(to).for_each(|(from, to)| to.0[target] = from.0[lane]);
     }
     to.max_re.0[target] = from.max_re.0[lane];
+    to.top_frequency.0[target] = from.top_frequency.0[lane];
 }
 
 fn append(results: &Results, lanes: usize, block: &mut Block) {
@@ -185,6 +210,7 @@ fn append(results: &Results, lanes: usize, block: &mut Block) {
         list.extend(re.0[..lanes].iter().zip(&im.0).map(|(&re, &im)| Complex::new(re, im)));
     }
     block.max_re.extend_from_slice(&results.max_re.0[..lanes]);
+    block.top_frequency.extend_from_slice(&results.top_frequency.0[..lanes]);
 }
 
 #[cfg(test)]

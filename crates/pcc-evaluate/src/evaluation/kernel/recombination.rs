@@ -1,26 +1,31 @@
 //! Eigenvalues from components in all lanes at once.
 //!
-//! Single modes and pairs, whatever they are made of, take plain loops over lanes, which compile to vector
-//! instructions; larger clusters are polynomials whose roots are found lane by lane. The values are those of
+//! Single eigenvalues and pairs, whatever they are made of, take plain loops over lanes, which compile to vector
+//! instructions; larger groups are polynomials whose roots are found lane by lane. The values are those of
 //! [`Output::recombine`], bit by bit.
 
 use super::lanes::{BLOCK_POINTS, Lanes};
 use super::results::Results;
-use crate::components::{Output, OutputKind, is_equal_frequency, is_safe_square, square_root};
+use crate::components::{Output, OutputKind, closed_pair, is_equal_frequency, is_safe_square, square_root};
 use num_complex::Complex;
 
 /// Fills in eigenvalues and max Re λ, given the components.
 #[inline(always)]
 pub(crate) fn recombine(outputs: &[Output], results: &mut Results) {
-    let Results { components, growth_rates, angular_frequencies, max_re } = results;
-    let mut first_mode = 0;
+    let Results { components, growth_rates, angular_frequencies, max_re, top_frequency } = results;
+    let (mut first, mut some_are_closed) = (0, false);
     for output in outputs {
-        let modes = first_mode..first_mode + output.modes.len();
-        let (re, im) = (&mut growth_rates[modes.clone()], &mut angular_frequencies[modes.clone()]);
-        first_mode = modes.end;
+        let own = first..first + output.eigenvalue_count();
+        let (re, im) = (&mut growth_rates[own.clone()], &mut angular_frequencies[own.clone()]);
+        first = own.end;
+        some_are_closed |= output.kind == OutputKind::Closed;
         let part = |k: usize| &components[output.components[k].id];
         match (output.kind, re, im) {
             (OutputKind::Eigenvalue, [re], [im]) => (*re, *im) = (*part(0), *part(1)),
+            (OutputKind::Closed, [re], [im]) => (*re, *im) = (*part(0), Lanes::splat(0.0)),
+            (OutputKind::Closed, [re_1, re_2], [im_1, im_2]) => {
+                closed_pairs([part(0), part(1)], [re_1, re_2], [im_1, im_2]);
+            }
             (OutputKind::Cluster, [re_1, re_2], [im_1, im_2]) => {
                 pair([part(0), part(1)], [part(2), part(3)], [re_1, re_2], [im_1, im_2]);
             }
@@ -28,6 +33,34 @@ pub(crate) fn recombine(outputs: &[Output], results: &mut Results) {
         }
     }
     *max_re = spectral_abscissa(growth_rates, angular_frequencies);
+    if some_are_closed {
+        *top_frequency = frequency_of_largest(growth_rates, angular_frequencies, max_re);
+    }
+}
+
+/// λ² − e₁ λ + e₂ = 0.
+#[inline(always)]
+fn closed_pairs(symmetric: [&Lanes; 2], re: [&mut Lanes; 2], im: [&mut Lanes; 2]) {
+    let ([re_1, re_2], [im_1, im_2]) = (re, im);
+    for lane in 0..BLOCK_POINTS {
+        let [first, second] = closed_pair(symmetric[0].0[lane], symmetric[1].0[lane]);
+        (re_1.0[lane], im_1.0[lane]) = (first.re, first.im);
+        (re_2.0[lane], im_2.0[lane]) = (second.re, second.im);
+    }
+}
+
+/// Im λ of the first eigenvalue with Re λ = max Re λ.
+#[inline(always)]
+fn frequency_of_largest(growth_rates: &[Lanes], angular_frequencies: &[Lanes], max_re: &Lanes) -> Lanes {
+    let mut found = Lanes::splat(0.0);
+    for (re, im) in growth_rates.iter().zip(angular_frequencies).rev() {
+        for lane in 0..BLOCK_POINTS {
+            if re.0[lane] == max_re.0[lane] {
+                found.0[lane] = im.0[lane];
+            }
+        }
+    }
+    found
 }
 
 /// λ = s ± √−c_0, by frequency.
@@ -111,6 +144,7 @@ mod tests {
         Output {
             kind: OutputKind::Cluster,
             modes: vec![1, 2],
+            reals: Vec::new(),
             name: String::new(),
             unit: String::new(),
             components: (0..4).map(component).collect(),
@@ -138,6 +172,7 @@ mod tests {
                 growth_rates: vec![Lanes::splat(0.0); 2],
                 angular_frequencies: vec![Lanes::splat(0.0); 2],
                 max_re: Lanes::splat(0.0),
+                top_frequency: Lanes::splat(1.0),
             };
             for (lane, case) in chunk.iter().enumerate() {
                 (0..4).for_each(|id| results.components[id].0[lane] = case[id]);
@@ -150,6 +185,48 @@ mod tests {
                 assert_eq!(found(&results.growth_rates), bits(expected.iter().map(|l| l.re)), "{case:?}");
                 assert_eq!(found(&results.angular_frequencies), bits(expected.iter().map(|l| l.im)), "{case:?}");
                 assert_eq!(bits([results.max_re.0[lane]]), bits([abscissa_of(&expected)]), "{case:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn closed_groups_in_lanes_are_those_of_one_sample() {
+        let parts = [0.0, -0.0, 1.0, -3.5, 1e-300, 1e200, f64::INFINITY, f64::NAN, -1e-8];
+        for (modes, reals) in [(0, 1), (1, 0), (0, 2), (1, 1), (2, 1)] {
+            let count = 2 * modes + reals;
+            let component = |id| Component { id, name: String::new(), center: 0.0, scale: 1.0 };
+            let output = Output {
+                kind: OutputKind::Closed,
+                modes: (1..=modes).collect(),
+                reals: (1..=reals).collect(),
+                name: String::new(),
+                unit: String::new(),
+                components: (0..count).map(component).collect(),
+            };
+            let value = |lane: usize, id: usize| parts[(lane * (3 * id + 1) + id) % parts.len()];
+            let mut results = Results {
+                components: vec![Lanes::splat(0.25); count],
+                growth_rates: vec![Lanes::splat(0.0); count],
+                angular_frequencies: vec![Lanes::splat(0.0); count],
+                max_re: Lanes::splat(0.0),
+                top_frequency: Lanes::splat(1.0),
+            };
+            for lane in 0..BLOCK_POINTS {
+                (0..count).for_each(|id| results.components[id].0[lane] = value(lane, id));
+            }
+            recombine(std::slice::from_ref(&output), &mut results);
+            for lane in 0..BLOCK_POINTS {
+                let case: Vec<f64> = (0..count).map(|id| value(lane, id)).collect();
+                let mut expected = Vec::new();
+                output.recombine(&case, &mut expected);
+                let found = |lists: &[Lanes]| bits(lists.iter().map(|list| list.0[lane]));
+                assert_eq!(found(&results.growth_rates), bits(expected.iter().map(|l| l.re)), "{case:?}");
+                assert_eq!(found(&results.angular_frequencies), bits(expected.iter().map(|l| l.im)), "{case:?}");
+                let largest = abscissa_of(&expected);
+                assert_eq!(bits([results.max_re.0[lane]]), bits([largest]), "{case:?}");
+                if let Some(top) = expected.iter().find(|lambda| lambda.re == largest) {
+                    assert_eq!(results.top_frequency.0[lane], top.im, "{case:?}");
+                }
             }
         }
     }

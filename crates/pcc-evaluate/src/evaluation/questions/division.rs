@@ -22,9 +22,9 @@ pub struct Division {
     pub(crate) replicates: u64,
     pub(crate) samples_per_series: u64,
     pub(crate) chunk: u64,
-    /// Components and modes whose moments are kept: none of them for sweeps, which have many series.
+    /// Components and eigenvalues whose moments are kept: none of them for sweeps, which have many series.
     pub(crate) components: usize,
-    pub(crate) modes: usize,
+    pub(crate) eigenvalues: usize,
     pub(crate) events: usize,
     /// Bins of each histogram.
     pub(crate) bins: Vec<usize>,
@@ -83,10 +83,13 @@ impl Division {
     pub(crate) fn fits(&self, chunks: &Range<u64>, tally: &Tally) -> bool {
         let summary = &tally.summary;
         let samples = self.samples_in(chunks);
-        let unstable = summary.modes.iter().map(|mode| mode.unstable);
-        let counts = tally.events.iter().copied().chain(unstable).chain(summary.stable_if_shifted);
+        let of_eigenvalues = summary.eigenvalues.iter().flat_map(|own| [own.unstable, own.real]);
+        let counts = tally.events.iter().copied().chain(of_eigenvalues).chain(summary.stable_if_shifted);
+        let diverging = summary.eigenvalues.iter().map(|own| (own.divergent, own.unstable.min(own.real)));
+        let diverges = (summary.divergent, samples.saturating_sub(summary.stable));
         summary.components.len() == self.components
-            && summary.modes.len() == self.modes
+            && summary.eigenvalues.len() == self.eigenvalues
+            && diverging.chain([diverges]).all(|(divergent, most)| divergent <= most)
             && tally.events.len() == self.events
             && summary.moments().all(|moments| moments.are_of(samples))
             && counts.chain([summary.stable]).all(|count| count <= samples)
@@ -105,7 +108,7 @@ mod tests {
             samples_per_series,
             chunk,
             components: 0,
-            modes: 0,
+            eigenvalues: 0,
             events: 0,
             bins: Vec::new(),
             is_sweep: cells > 1,

@@ -85,11 +85,12 @@ impl Pilot {
         let Self(summary) = self;
         match quantity {
             Quantity::MaxRe => (&summary.max_re, 1.0),
-            Quantity::GrowthRate(mode) => (&summary.modes[mode].growth_rate, 1.0),
-            Quantity::AngularFrequency(mode) => (&summary.modes[mode].angular_frequency, 1.0),
-            Quantity::Frequency(mode) => (&summary.modes[mode].angular_frequency, 1.0 / TAU),
-            Quantity::DampingRatio(mode) => (&summary.modes[mode].damping_ratio, 1.0),
+            Quantity::GrowthRate(at) => (&summary.eigenvalues[at].growth_rate, 1.0),
+            Quantity::AngularFrequency(at) => (&summary.eigenvalues[at].angular_frequency, 1.0),
+            Quantity::Frequency(at) => (&summary.eigenvalues[at].angular_frequency, 1.0 / TAU),
+            Quantity::DampingRatio(at) => (&summary.eigenvalues[at].damping_ratio, 1.0),
             Quantity::Component(id) => (&summary.components[id], 1.0),
+            Quantity::Flutter | Quantity::Divergence => (&summary.max_re, 1.0),
         }
     }
 }

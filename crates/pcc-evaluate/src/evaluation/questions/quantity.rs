@@ -1,4 +1,4 @@
-//! What can be asked about: max Re λ, parts of modes, components.
+//! What can be asked about: max Re λ, parts of eigenvalues, components, kinds of instability.
 
 use crate::components::damping_ratio;
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
@@ -6,36 +6,51 @@ use crate::evaluation::kernel::results::Results;
 use crate::surrogate::Surrogate;
 use std::f64::consts::TAU;
 
+/// Names of the kinds of instability, which are events by themselves.
+pub(super) const FLUTTER: &str = "flutter";
+pub(super) const DIVERGENCE: &str = "divergence";
+
 /// A number that every sample has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Spectral abscissa max Re λ, in 1/s: `max_re`.
     MaxRe,
-    /// Re λ of a mode by position, in 1/s: `re_3` for the mode of rank 3.
+    /// Re λ of an eigenvalue by position, in 1/s: `re_3` for mode 3, `re_3_b` for its second eigenvalue, `real_1`.
     GrowthRate(usize),
-    /// Im λ of a mode by position, in rad/s: `im_3`.
+    /// Im λ of a mode by the position of its eigenvalue, in rad/s: `im_3`.
     AngularFrequency(usize),
-    /// Im λ/2π of a mode by position, in Hz: `frequency_3`.
+    /// Im λ/2π of a mode by the position of its eigenvalue, in Hz: `frequency_3`.
     Frequency(usize),
-    /// Damping ratio −Re λ/|λ| of a mode by position: `damping_3`.
+    /// Damping ratio −Re λ/|λ| of a mode by the position of its eigenvalue: `damping_3`.
     DampingRatio(usize),
     /// A component by id: its own name.
     Component(usize),
+    /// 1 where the eigenvalue with the largest Re λ is unstable and oscillates, else 0: `flutter`.
+    Flutter,
+    /// 1 where the eigenvalue with the largest Re λ is unstable and real, else 0: `divergence`.
+    Divergence,
 }
 
 impl Quantity {
     /// The quantity of this name; `None` if the surrogate has none such.
     pub fn named(name: &str, surrogate: &Surrogate) -> Option<Self> {
-        Self::all(surrogate).into_iter().find(|quantity| quantity.name(surrogate) == name)
+        let kinds = [Self::Flutter, Self::Divergence];
+        Self::all(surrogate).into_iter().chain(kinds).find(|quantity| quantity.name(surrogate) == name)
     }
 
-    /// All quantities of a surrogate; components that are parts of modes by themselves are not repeated.
+    /// All quantities of a surrogate that vary, not the kinds of instability; components that are parts of eigenvalues
+    /// by themselves are not repeated.
     pub fn all(surrogate: &Surrogate) -> Vec<Self> {
-        let modes = surrogate.modes().len();
+        let labels = surrogate.labels();
+        let is_mode = |at: &usize| labels[*at].mode().is_some();
+        let modes = || (0..labels.len()).filter(is_mode);
         let mut all = vec![Self::MaxRe];
-        all.extend((0..modes).flat_map(|mode| [Self::GrowthRate(mode), Self::AngularFrequency(mode)]));
-        all.extend((0..modes).map(Self::Frequency));
-        all.extend((0..modes).map(Self::DampingRatio));
+        for at in 0..labels.len() {
+            all.push(Self::GrowthRate(at));
+            all.extend(Some(Self::AngularFrequency(at)).filter(|_| is_mode(&at)));
+        }
+        all.extend(modes().map(Self::Frequency));
+        all.extend(modes().map(Self::DampingRatio));
         let names: Vec<String> = all.iter().map(|quantity| quantity.name(surrogate)).collect();
         let components = (0..surrogate.component_count()).map(Self::Component);
         all.extend(components.filter(|component| !names.contains(&component.name(surrogate))));
@@ -44,17 +59,20 @@ impl Quantity {
 
     /// Name on the command line and in reports.
     pub fn name(self, surrogate: &Surrogate) -> String {
-        let rank = |mode: usize| surrogate.modes().get(mode).copied().unwrap_or_default();
+        let label = |at: usize| surrogate.labels()[at];
+        let mode = |at: usize| label(at).mode().unwrap_or_default();
         match self {
             Self::MaxRe => "max_re".to_owned(),
-            Self::GrowthRate(mode) => format!("re_{}", rank(mode)),
-            Self::AngularFrequency(mode) => format!("im_{}", rank(mode)),
-            Self::Frequency(mode) => format!("frequency_{}", rank(mode)),
-            Self::DampingRatio(mode) => format!("damping_{}", rank(mode)),
+            Self::GrowthRate(at) => label(at).growth_rate(),
+            Self::AngularFrequency(at) => format!("im_{}", mode(at)),
+            Self::Frequency(at) => format!("frequency_{}", mode(at)),
+            Self::DampingRatio(at) => format!("damping_{}", mode(at)),
             Self::Component(id) => {
                 let components = surrogate.components();
                 components.iter().find(|component| component.id == id).map(|c| c.name.clone()).unwrap_or_default()
             }
+            Self::Flutter => FLUTTER.to_owned(),
+            Self::Divergence => DIVERGENCE.to_owned(),
         }
     }
 
@@ -72,8 +90,21 @@ impl Quantity {
             }
             Self::DampingRatio(mode) => damping_ratios(&results.growth_rates[mode], &results.angular_frequencies[mode]),
             Self::Component(id) => results.components[id],
+            Self::Flutter => indicator(results, |frequency| frequency != 0.0),
+            Self::Divergence => indicator(results, |frequency| frequency == 0.0),
         }
     }
+}
+
+/// 1 where the largest Re λ is not negative and its Im λ as it should be.
+#[inline(always)]
+fn indicator(results: &Results, is_kind: impl Fn(f64) -> bool) -> Lanes {
+    let mut found = Lanes::splat(0.0);
+    for lane in 0..BLOCK_POINTS {
+        let holds = results.max_re.0[lane] >= 0.0 && is_kind(results.top_frequency.0[lane]);
+        found.0[lane] = if holds { 1.0 } else { 0.0 };
+    }
+    found
 }
 
 /// −Re λ/|λ|.

@@ -3,7 +3,11 @@
 //! A [`Question`] is plain text and numbers, as typed and as kept in part files; [`crate::evaluation::Survey`] checks
 //! it against a surrogate.
 
+use super::quantity::{DIVERGENCE, FLUTTER};
 use serde::{Deserialize, Serialize};
+
+/// Kinds of instability are numbers, 1 or 0.
+const KIND_THRESHOLD: f64 = 0.5;
 
 /// A question. Two runs with equal questions of the same surrogate give the same answer, bit by bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -119,8 +123,17 @@ pub struct Event {
 }
 
 impl Event {
+    /// A kind of instability by its name, `flutter` or `divergence`; `None` if it is no such name.
+    pub fn of_kind(name: &str) -> Option<Self> {
+        let is_kind = [FLUTTER, DIVERGENCE].contains(&name);
+        is_kind.then(|| Self { quantity: name.to_owned(), below: false, threshold: KIND_THRESHOLD })
+    }
+
     /// As typed: `max_re<-1`.
     pub fn text(&self) -> String {
+        if Self::of_kind(&self.quantity).as_ref() == Some(self) {
+            return self.quantity.clone();
+        }
         let (side, size) = (if self.below { '<' } else { '>' }, self.threshold.abs());
         match size != 0.0 && !(1e-5..1e15).contains(&size) {
             true => format!("{}{side}{:e}", self.quantity, self.threshold),

@@ -111,7 +111,7 @@ impl<'a> Survey<'a> {
             samples_per_series,
             chunk: Division::chunk_size(surrogate.mesh.elements().len()),
             components: kept(surrogate.component_count()),
-            modes: kept(surrogate.modes().len()),
+            eigenvalues: kept(surrogate.labels().len()),
             events: watches.len(),
             bins: binned.iter().map(|(_, bins)| bins.bins as usize).collect(),
             is_sweep,
@@ -202,9 +202,9 @@ impl<'s> Worker<'s> {
         let (survey, histograms) = (self.survey, &mut self.histograms);
         let (cell, replicate, samples) = survey.division.locate(chunk);
         let count = (samples.end - samples.start) as usize;
-        let Division { components, modes, .. } = survey.division;
-        let shifts = survey.surrogate.decision.band_shifts();
-        let mut gathering = Gathering::new(components, modes, shifts, &survey.watches);
+        let Division { components, eigenvalues, .. } = survey.division;
+        let (shifts, has_reals) = (survey.surrogate.decision.band_shifts(), survey.surrogate.has_real_eigenvalues());
+        let mut gathering = Gathering::new((components, eigenvalues), has_reals, shifts, &survey.watches);
         let region = survey.regions.at(cell);
         let draw = |start, points: &mut [_]| survey.draw(&region, replicate, samples.start + start as u64, points);
         let add = |results: &Results, lanes| {

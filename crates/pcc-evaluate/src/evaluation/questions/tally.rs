@@ -4,7 +4,7 @@
 //! the width of the processor's vectors: the bits are the same everywhere.
 
 use super::quantity::{Quantity, damping_ratios};
-use crate::components::{ModeSummary, Summary};
+use crate::components::{EigenvalueSummary, Summary};
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::evaluation::kernel::results::Results;
 use crate::probability::statistics::{Merge, Moments};
@@ -18,7 +18,7 @@ const PARTS: usize = 16;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tally {
-    /// Stability, moments, modes.
+    /// Stability, moments, eigenvalues.
     pub summary: Summary,
     /// Samples in each event.
     pub events: Vec<u64>,
@@ -53,22 +53,27 @@ pub(crate) struct Gathering<'a> {
     /// Errors of max Re λ that could be, in 1/s.
     shifts: [f64; 2],
     watches: &'a [Watch],
+    /// Whether eigenvalues can be real: where none can, nothing is counted of it.
+    has_reals: bool,
     count: u64,
     stable: u64,
+    divergent: u64,
     stable_if_shifted: [u64; 2],
     events: Vec<u64>,
     max_re: Sums,
     components: Vec<Sums>,
-    modes: Vec<ModeSums>,
+    eigenvalues: Vec<EigenvalueSums>,
     is_finite: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct ModeSums {
+struct EigenvalueSums {
     growth_rate: Sums,
     angular_frequency: Sums,
     damping_ratio: Sums,
     unstable: u64,
+    real: u64,
+    divergent: u64,
 }
 
 /// Sums of the deviations d of a quantity from `shift`.
@@ -83,20 +88,33 @@ struct Sums {
 }
 
 impl<'a> Gathering<'a> {
-    /// Nothing yet, of so many components and modes; 0 of them for counts alone.
-    pub fn new(components: usize, modes: usize, shifts: [f64; 2], watches: &'a [Watch]) -> Self {
-        let mode =
-            ModeSums { growth_rate: Sums::NONE, angular_frequency: Sums::NONE, damping_ratio: Sums::NONE, unstable: 0 };
+    /// Nothing yet, of so many components and eigenvalues, 0 of them for counts alone.
+    pub fn new(
+        (components, eigenvalues): (usize, usize),
+        has_reals: bool,
+        shifts: [f64; 2],
+        watches: &'a [Watch],
+    ) -> Self {
+        let none = EigenvalueSums {
+            growth_rate: Sums::NONE,
+            angular_frequency: Sums::NONE,
+            damping_ratio: Sums::NONE,
+            unstable: 0,
+            real: 0,
+            divergent: 0,
+        };
         Self {
             shifts,
             watches,
+            has_reals,
             count: 0,
             stable: 0,
+            divergent: 0,
             stable_if_shifted: [0; 2],
             events: vec![0; watches.len()],
             max_re: Sums::NONE,
             components: vec![Sums::NONE; components],
-            modes: vec![mode; modes],
+            eigenvalues: vec![none; eigenvalues],
             is_finite: true,
         }
     }
@@ -109,18 +127,21 @@ impl<'a> Gathering<'a> {
     /// What was gathered.
     pub fn tally(&self) -> Tally {
         let moments = |sums: &Sums| sums.moments(self.count);
-        let mode = |sums: &ModeSums| ModeSummary {
+        let eigenvalue = |sums: &EigenvalueSums| EigenvalueSummary {
             growth_rate: moments(&sums.growth_rate),
             angular_frequency: moments(&sums.angular_frequency),
             damping_ratio: moments(&sums.damping_ratio),
             unstable: sums.unstable,
+            real: sums.real,
+            divergent: sums.divergent,
         };
         let summary = Summary {
             stable: self.stable,
+            divergent: self.divergent,
             stable_if_shifted: self.stable_if_shifted,
             max_re: moments(&self.max_re),
             components: self.components.iter().map(moments).collect(),
-            modes: self.modes.iter().map(mode).collect(),
+            eigenvalues: self.eigenvalues.iter().map(eigenvalue).collect(),
         };
         Tally { summary, events: self.events.clone() }
     }
@@ -158,12 +179,19 @@ impl WithSimd for Adding<'_, '_> {
         for (sums, values) in gathering.components.iter_mut().zip(&results.components) {
             sums.add(values, lanes, is_first);
         }
-        let modes = results.growth_rates.iter().zip(&results.angular_frequencies);
-        for (sums, (growth_rate, angular_frequency)) in gathering.modes.iter_mut().zip(modes) {
+        if gathering.has_reals {
+            gathering.divergent += count_both(max_re, &results.top_frequency, lanes, |re, im| re >= 0.0 && im == 0.0);
+        }
+        let eigenvalues = results.growth_rates.iter().zip(&results.angular_frequencies);
+        for (sums, (growth_rate, angular_frequency)) in gathering.eigenvalues.iter_mut().zip(eigenvalues) {
             sums.growth_rate.add(growth_rate, lanes, is_first);
             sums.angular_frequency.add(angular_frequency, lanes, is_first);
             sums.damping_ratio.add(&damping_ratios(growth_rate, angular_frequency), lanes, is_first);
             sums.unstable += count(growth_rate, lanes, |value| value >= 0.0);
+            if gathering.has_reals {
+                sums.real += count(angular_frequency, lanes, |value| value == 0.0);
+                sums.divergent += count_both(growth_rate, angular_frequency, lanes, |re, im| re >= 0.0 && im == 0.0);
+            }
         }
     }
 }
@@ -174,6 +202,11 @@ fn count(values: &Lanes, lanes: usize, holds: impl Fn(f64) -> bool) -> u64 {
         BLOCK_POINTS => values.0.iter().map(|&value| u64::from(holds(value))).sum(),
         _ => values.0[..lanes].iter().map(|&value| u64::from(holds(value))).sum(),
     }
+}
+
+#[inline(always)]
+fn count_both(first: &Lanes, second: &Lanes, lanes: usize, holds: impl Fn(f64, f64) -> bool) -> u64 {
+    first.0[..lanes].iter().zip(&second.0[..lanes]).map(|(&a, &b)| u64::from(holds(a, b))).sum()
 }
 
 impl Sums {

@@ -1,0 +1,264 @@
+//! Fits of groups of eigenvalues, and how well each group predicts its eigenvalues at runs left out.
+//!
+//! Many groupings share groups: each group is fitted once per design, and starts from what the smaller designs have
+//! taught of it.
+
+use super::components::{ComponentFit, ComponentResult};
+use crate::campaign::Run;
+use crate::fitting::design::Samples;
+use crate::fitting::fit::method::Previous;
+use crate::fitting::regression::{BasisTables, Gradients, Response};
+use crate::mechanics::spectrum::{Group, Groups, Labels, Numbers, components_of, output};
+use crate::numerics::assignment::assignment;
+use crate::study::Study;
+use nalgebra::{Complex, DMatrix};
+use pcc_evaluate::components::{Output, OutputKind};
+use pcc_evaluate::foundation::{Interrupted, Observer};
+use std::collections::HashMap;
+
+/// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
+const SOLVER_ACCURACY: f64 = 1e-13;
+
+/// Stands for a distance that is no number.
+const FAR: f64 = 1e300;
+
+/// What was found on a design, and how its eigenvalues are followed.
+pub(super) struct Followed<'d> {
+    pub samples: &'d Samples,
+    pub runs: &'d [Run],
+    pub labels: Labels,
+    pub groups: Groups,
+    pub has_derivatives: bool,
+}
+
+impl Followed<'_> {
+    /// The eigenvalues of a group at every run, in the order in which components are made of them.
+    pub fn eigenvalues(&self, group: &Group) -> Vec<Vec<Complex<f64>>> {
+        let at_run = |(run, found): (usize, &Run)| self.groups.eigenvalues(group, &self.labels, run, &found.spectrum);
+        self.runs.iter().enumerate().map(at_run).collect()
+    }
+
+    /// The eigenvalue of a label at a run.
+    pub fn eigenvalue(&self, run: usize, label: usize) -> Complex<f64> {
+        self.runs[run].spectrum.eigenvalues()[self.labels.position(run, label)]
+    }
+}
+
+/// A group with everything fitted that it is made of.
+pub(super) struct GroupFit {
+    /// Its components, numbered from 0 and named for nobody.
+    pub output: Output,
+    /// Its eigenvalues at every run.
+    pub eigenvalues: Vec<Vec<Complex<f64>>>,
+    /// Per component, one value per run.
+    pub values: Vec<Vec<f64>>,
+    /// Per component its derivatives, if the runs come with any.
+    pub gradients: Option<Vec<Gradients>>,
+    /// Per component, differences up to this size are rounding of the eigenvalue solver.
+    pub resolutions: Vec<f64>,
+    /// Per component, its fit.
+    pub fits: Vec<ComponentResult>,
+    /// The largest error of its eigenvalues at runs left out, relative to what matters; infinite if it is not known.
+    pub score: f64,
+}
+
+/// The fits of all groups that were tried on the current design.
+pub(super) struct GroupFits<'a> {
+    study: &'a Study,
+    fit: ComponentFit<'a>,
+    current: HashMap<Group, GroupFit>,
+    /// What the current design and smaller ones have taught of the components of each group.
+    previous: HashMap<Group, Vec<Previous>>,
+    tables: Option<BasisTables>,
+}
+
+impl<'a> GroupFits<'a> {
+    pub fn new(study: &'a Study, fit: ComponentFit<'a>) -> Self {
+        Self { study, fit, current: HashMap::new(), previous: HashMap::new(), tables: None }
+    }
+
+    /// Begins a design: nothing is fitted on it yet.
+    pub fn begin(&mut self, followed: &Followed<'_>) {
+        self.current.clear();
+        self.tables = Some(self.fit.tables(followed.samples, followed.has_derivatives));
+    }
+
+    /// Forgets what smaller designs have taught, because labels are no longer the same.
+    pub fn forget(&mut self) {
+        self.previous.clear();
+    }
+
+    /// Fits those of `groups` that are not fitted yet on this design.
+    pub fn add<'g>(
+        &mut self,
+        groups: impl IntoIterator<Item = &'g Group>,
+        followed: &Followed<'_>,
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<(), Interrupted> {
+        let mut missing: Vec<&Group> = groups.into_iter().filter(|group| !self.current.contains_key(group)).collect();
+        missing.sort_unstable();
+        missing.dedup();
+        let Some(tables) = self.tables.as_ref().filter(|_| !missing.is_empty()) else { return Ok(()) };
+        let mut new: Vec<(&Group, GroupFit)> =
+            missing.into_iter().map(|group| (group, self.unfitted(group, followed))).collect();
+        let responses: Vec<Response<'_>> = new.iter().flat_map(|(_, fit)| fit.responses()).collect();
+        let previous: Vec<Previous> = new
+            .iter()
+            .flat_map(|(group, fit)| match self.previous.get(group) {
+                Some(known) => known.clone(),
+                None => vec![self.fit.nothing(); fit.values.len()],
+            })
+            .collect();
+        let found = self.fit.fit(tables, &responses, &previous, can_grow, observer)?;
+        let mut found = found.unwrap_or_default().into_iter();
+        for (group, fit) in &mut new {
+            let (fits, learnt) = found.by_ref().take(fit.values.len()).unzip();
+            fit.fits = fits;
+            self.previous.insert((*group).clone(), learnt);
+            fit.score = score(fit, group, followed);
+        }
+        self.current.extend(new.into_iter().map(|(group, fit)| (group.clone(), fit)));
+        Ok(())
+    }
+
+    /// A group that was added.
+    pub fn get(&self, group: &Group) -> Option<&GroupFit> {
+        self.current.get(group)
+    }
+
+    /// Takes a group away, to keep it.
+    pub fn take(&mut self, group: &Group) -> Option<GroupFit> {
+        self.current.remove(group)
+    }
+
+    /// Its eigenvalues in the middle of the inputs, in the order of recombination.
+    pub fn eigenvalues_at_center(&self, fit: &GroupFit) -> Vec<Complex<f64>> {
+        let values: Vec<f64> = fit.fits.iter().map(|one| self.fit.value_at_center(&one.result)).collect();
+        let mut found = Vec::new();
+        fit.output.recombine(&values, &mut found);
+        found
+    }
+
+    fn unfitted(&self, group: &Group, followed: &Followed<'_>) -> GroupFit {
+        let eigenvalues = followed.eigenvalues(group);
+        let (modes, reals) = followed.groups.modes_and_reals(group);
+        let numbers = Numbers { modes: (1..=modes).collect(), reals: (1..=reals).collect() };
+        let output = output(group.kind(), &numbers, &eigenvalues);
+        let mut values = vec![Vec::with_capacity(eigenvalues.len()); output.components.len()];
+        for lambdas in &eigenvalues {
+            let at_run = components_of(group.kind(), lambdas);
+            values.iter_mut().zip(at_run).for_each(|(list, value)| list.push(value));
+        }
+        GroupFit {
+            gradients: followed.has_derivatives.then(|| self.gradients(&output, &eigenvalues, followed)),
+            resolutions: resolutions(&output, followed.runs),
+            output,
+            eigenvalues,
+            values,
+            fits: Vec::new(),
+            score: f64::INFINITY,
+        }
+    }
+
+    /// The derivatives of each component in standardized variables. Runs in which the group cannot be separated from
+    /// the rest of the spectrum have none.
+    fn gradients(&self, output: &Output, eigenvalues: &[Vec<Complex<f64>>], followed: &Followed<'_>) -> Vec<Gradients> {
+        let slopes =
+            |(i, run): (usize, &Run)| Some((i, run.reductions.as_ref()?.differentiate(output.kind, &eigenvalues[i])?));
+        let found: Vec<(usize, Vec<Vec<f64>>)> = followed.runs.iter().enumerate().filter_map(slopes).collect();
+        gradients(&found, output.components.len(), followed.samples, self.study)
+    }
+}
+
+/// The derivatives of `count` components by ξ, from those by the inputs at some runs: one list per input each.
+pub(super) fn gradients(
+    found: &[(usize, Vec<Vec<f64>>)],
+    count: usize,
+    samples: &Samples,
+    study: &Study,
+) -> Vec<Gradients> {
+    let inputs = study.inputs.inputs();
+    let of_component = |position: usize| {
+        // ∂y/∂ξ_j = ∂y/∂x_j · dx_j/dξ_j
+        let standardized = inputs.iter().enumerate().flat_map(|(j, input)| {
+            let chained = |(i, by_input): &(usize, Vec<Vec<f64>>)| {
+                by_input[j][position] * input.marginal.slope(samples.point(*i)[j])
+            };
+            found.iter().map(chained).collect::<Vec<f64>>()
+        });
+        Gradients { slopes: standardized.collect(), points: found.iter().map(|(i, _)| *i).collect() }
+    };
+    (0..count).map(of_component).collect()
+}
+
+impl GroupFit {
+    /// What each component is fitted to.
+    fn responses(&self) -> Vec<Response<'_>> {
+        let response = |id: usize| {
+            let gradients = self.gradients.as_ref().map(|all| &all[id]).filter(|one| !one.points.is_empty());
+            Response { gradients, ..Response::of(&self.values[id], self.resolutions[id]) }
+        };
+        (0..self.values.len()).map(response).collect()
+    }
+
+    /// The eigenvalues that the fit without run i predicts there, in the order of recombination; `None` if it is not
+    /// known.
+    fn predicted_without(&self, run: usize) -> Option<Vec<Complex<f64>>> {
+        let predicted = |(values, fit): (&Vec<f64>, &ComponentResult)| {
+            Some(values[run] - fit.result.leave_one_out_residuals.as_ref()?[run])
+        };
+        let components: Vec<f64> = self.values.iter().zip(&self.fits).map(predicted).collect::<Option<_>>()?;
+        let mut found = Vec::new();
+        self.output.recombine(&components, &mut found);
+        Some(found)
+    }
+}
+
+/// The largest over the eigenvalues of a group of: the rms error of its Re λ at runs left out, over the rms distance of
+/// its Re λ from the largest of all plus the spread of its Re λ. What never comes near the top may be known less well.
+fn score(fit: &GroupFit, group: &Group, followed: &Followed<'_>) -> f64 {
+    let runs = followed.runs.len();
+    let labels = group.labels();
+    let mut squares = vec![0.0; labels.len()];
+    for run in 0..runs {
+        let Some(predicted) = fit.predicted_without(run).filter(|found| found.len() == labels.len()) else {
+            return f64::INFINITY;
+        };
+        let lambdas: Vec<Complex<f64>> = labels.iter().map(|&label| followed.eigenvalue(run, label)).collect();
+        let distances = DMatrix::from_fn(labels.len(), labels.len(), |k, j| {
+            let distance = (lambdas[k] - predicted[j]).norm();
+            if distance.is_finite() { distance } else { FAR }
+        });
+        for (k, &j) in assignment(&distances).iter().enumerate() {
+            let error = predicted[j].re - lambdas[k].re;
+            squares[k] += if error.is_finite() { error * error } else { FAR };
+        }
+    }
+    let relative = |(k, &label): (usize, &usize)| {
+        let growth_rates: Vec<f64> = (0..runs).map(|run| followed.eigenvalue(run, label).re).collect();
+        let distance = |run: usize| (followed.runs[run].spectrum.max_re() - growth_rates[run]).powi(2);
+        let distance = ((0..runs).map(distance).sum::<f64>() / runs as f64).sqrt();
+        let mean = growth_rates.iter().sum::<f64>() / runs as f64;
+        let spread = (growth_rates.iter().map(|re| (re - mean).powi(2)).sum::<f64>() / runs as f64).sqrt();
+        let error = (squares[k] / runs as f64).sqrt();
+        if error == 0.0 { 0.0 } else { error / (distance + spread) }
+    };
+    labels.iter().enumerate().map(relative).fold(0.0, f64::max)
+}
+
+/// Differences of each component of `output` up to this size are rounding of the eigenvalue solver in these runs.
+pub(super) fn resolutions<'r>(output: &Output, runs: impl IntoIterator<Item = &'r Run>) -> Vec<f64> {
+    let largest = runs.into_iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
+    let of_component = |(position, scale): (usize, f64)| {
+        // A coefficient of degree m in eigenvalues, or in their distances from the mean, has the scale Rᵐ: it moves by
+        // m Rᵐ⁻¹ per unit of λ.
+        let others = match output.kind {
+            OutputKind::Closed => position as f64,
+            OutputKind::Eigenvalue | OutputKind::Cluster => (position / 2) as f64,
+        };
+        let radius = scale.powf(1.0 / (others + 1.0));
+        SOLVER_ACCURACY * largest * (others + 1.0) * radius.powf(others)
+    };
+    output.components.iter().map(|component| component.scale).enumerate().map(of_component).collect()
+}

@@ -1,0 +1,276 @@
+//! Which eigenvalues form groups: decided by how well groups predict the eigenvalues of runs left out.
+//!
+//! Overlaps of eigenvectors give labels and candidates, never the decision: whether an edge of the tree is ambiguous
+//! depends on how dense the design is, and an exceptional point just outside the box spoils single expansions without
+//! any ambiguity. The *score* of a grouping is that of its worst eigenvalue (`group_fits.rs`).
+//!
+//! 1. Candidates: the finest grouping; labels united that nearly change places between neighbouring runs, at three
+//!    thresholds; labels united whose frequencies come close; all that always oscillate in one group and the rest in
+//!    another; everything in one group.
+//! 2. From each, the worst group is merged with a neighbour or with its own conjugates, as long as that lowers its
+//!    score by a factor [`WORTH`].
+//! 3. A grouping whose score is negligible ends the search, and so does that of the level before if its score has
+//!    fallen by that factor: more runs are what it needs. Else, of all groupings found, those within that factor of the
+//!    best are as good as it is, and the finest of them is taken; the one of the level before stays if it is among
+//!    them.
+//!
+//! No model is run for any of this, so it is done anew at every level.
+
+use super::group_fits::{Followed, GroupFits};
+use crate::mechanics::spectrum::Group;
+use pcc_evaluate::foundation::{Interrupted, Observer};
+
+/// Scores that differ by less than this factor are equal, and merging must lower a score by more.
+const WORTH: f64 = 3.0;
+
+/// Errors this small relative to the distances that decide are as good as none: they move shares by less than they are
+/// asked for.
+const NEGLIGIBLE: f64 = 1e-4;
+
+/// Swap ratios above which labels are united in some candidate.
+const SWAPS: [f64; 3] = [0.5, 0.05, 0.005];
+
+/// Frequencies that come closer than this share of the largest distance between the eigenvalues belong together in one
+/// of the candidates. The coalescing pair of the clutch reaches 10⁻³, its next neighbours stay above 0.8.
+const CLOSE: f64 = 0.2;
+
+/// A mode whose frequency falls below this share of its largest |λ| is tried together with its conjugate.
+const NEAR_AXIS: f64 = 0.2;
+
+/// Eigenvalues in a group that merging makes, at most; candidates may have larger ones.
+const MOST_MERGED: usize = 6;
+
+/// Eigenvalues in a group of a candidate, at most.
+const MOST_IN_CANDIDATE: usize = 8;
+
+/// Neighbours that a group is merged with by way of trial, the closest.
+const TRIED_NEIGHBOURS: usize = 4;
+
+/// A way to group all labels of interest.
+pub(super) type Grouping = Vec<Group>;
+
+/// The grouping that predicts best, of the labels whose finest groups are `of_interest`, with its score; `former` is
+/// that of the level before.
+pub(super) fn choose(
+    followed: &Followed<'_>,
+    of_interest: &[Group],
+    former: Option<(&Grouping, f64)>,
+    fits: &mut GroupFits<'_>,
+    can_grow: bool,
+    observer: &dyn Observer,
+) -> Result<(Grouping, f64), Interrupted> {
+    let finest: Grouping = sorted(of_interest.to_vec());
+    let mut choice = Choice { followed, fits, can_grow, observer };
+    let mut found: Vec<(Grouping, f64)> = Vec::new();
+    let former = former.filter(|(former, _)| is_made_of(former, &finest));
+    if let Some((former, before)) = former {
+        let score = choice.score_of_all(former)?;
+        if score <= NEGLIGIBLE || WORTH * score <= before {
+            return Ok((former.clone(), score));
+        }
+        found.push((former.clone(), score));
+    }
+    for candidate in candidates(followed, &finest) {
+        let candidate = choice.merged(candidate)?;
+        if candidate.1 <= NEGLIGIBLE {
+            return Ok(candidate);
+        }
+        if !found.iter().any(|(known, _)| *known == candidate.0) {
+            found.push(candidate);
+        }
+    }
+    let best = found.iter().map(|(_, score)| score.max(NEGLIGIBLE)).fold(f64::INFINITY, f64::min);
+    let as_good: Vec<&(Grouping, f64)> =
+        found.iter().filter(|(_, score)| score.max(NEGLIGIBLE) <= WORTH * best || best == f64::INFINITY).collect();
+    let is_former = |(grouping, _): &&&(Grouping, f64)| former.is_some_and(|(former, _)| grouping == former);
+    let finer = |a: &(Grouping, f64), b: &(Grouping, f64)| {
+        // Pairs are two eigenvalues whether closed or not: what counts is how few components depend on each other.
+        b.0.len().cmp(&a.0.len()).then(a.1.total_cmp(&b.1))
+    };
+    let chosen = as_good.iter().find(is_former).copied().or_else(|| as_good.into_iter().min_by(|a, b| finer(a, b)));
+    Ok(chosen.cloned().unwrap_or((finest, f64::INFINITY)))
+}
+
+struct Choice<'c, 'f, 'a> {
+    followed: &'c Followed<'c>,
+    fits: &'f mut GroupFits<'a>,
+    can_grow: bool,
+    observer: &'c dyn Observer,
+}
+
+impl Choice<'_, '_, '_> {
+    fn score_of(&mut self, group: &Group) -> Result<f64, Interrupted> {
+        self.fits.add([group], self.followed, self.can_grow, self.observer)?;
+        Ok(self.fits.get(group).map_or(f64::INFINITY, |fit| fit.score))
+    }
+
+    fn score_of_all(&mut self, grouping: &Grouping) -> Result<f64, Interrupted> {
+        self.fits.add(grouping, self.followed, self.can_grow, self.observer)?;
+        let scores: Vec<f64> = grouping.iter().map(|group| self.score_of(group)).collect::<Result<_, _>>()?;
+        Ok(scores.into_iter().fold(0.0, f64::max))
+    }
+
+    /// Merges the worst group as long as that is worth it; the grouping with its score.
+    fn merged(&mut self, mut grouping: Grouping) -> Result<(Grouping, f64), Interrupted> {
+        self.fits.add(&grouping, self.followed, self.can_grow, self.observer)?;
+        loop {
+            self.observer.check()?;
+            let mut scores = Vec::with_capacity(grouping.len());
+            for group in &grouping {
+                scores.push(self.score_of(group)?);
+            }
+            let Some(worst) = (0..scores.len()).reduce(|a, b| if scores[b] > scores[a] { b } else { a }) else {
+                return Ok((grouping, 0.0));
+            };
+            let score = scores[worst];
+            if score <= NEGLIGIBLE {
+                return Ok((grouping, score));
+            }
+            let trials = self.trials(&grouping, worst);
+            self.fits.add(trials.iter().map(|(group, _)| group), self.followed, self.can_grow, self.observer)?;
+            let mut best: Option<(f64, Group, Option<usize>)> = None;
+            for (group, other) in trials {
+                let merged = self.score_of(&group)?;
+                if best.as_ref().is_none_or(|(least, ..)| merged < *least) {
+                    best = Some((merged, group, other));
+                }
+            }
+            // Several groups may be as bad as the worst: merging is worth it if it mends this one.
+            match best.filter(|(merged, ..)| WORTH * merged.max(NEGLIGIBLE) < score) {
+                Some((_, group, other)) => {
+                    let mut kept: Grouping = Vec::with_capacity(grouping.len());
+                    let old = grouping.into_iter().enumerate();
+                    kept.extend(old.filter(|(at, _)| *at != worst && Some(*at) != other).map(|(_, group)| group));
+                    kept.push(group);
+                    grouping = sorted(kept);
+                }
+                None => return Ok((grouping, score)),
+            }
+        }
+    }
+
+    /// The worst group with its conjugates, and with each of its nearest neighbours.
+    fn trials(&self, grouping: &Grouping, worst: usize) -> Vec<(Group, Option<usize>)> {
+        let (groups, group) = (&self.followed.groups, &grouping[worst]);
+        let mut others: Vec<usize> = (0..grouping.len()).filter(|&other| other != worst).collect();
+        let distances: Vec<f64> = grouping.iter().map(|other| distance(self.followed, group, other)).collect();
+        others.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)));
+        let with_conjugates =
+            Some((groups.closed(group), None)).filter(|_| !group.is_closed() && nears_the_axis(self.followed, group));
+        let with_neighbours =
+            others.into_iter().take(TRIED_NEIGHBOURS).map(|other| (groups.union(group, &grouping[other]), Some(other)));
+        with_conjugates
+            .into_iter()
+            .chain(with_neighbours)
+            .filter(|(group, _)| group.size() <= MOST_MERGED && group.is_possible())
+            .collect()
+    }
+}
+
+/// The smallest distance between eigenvalues of two groups at some run, relative to their size.
+fn distance(followed: &Followed<'_>, one: &Group, other: &Group) -> f64 {
+    let at_run = |run: usize| {
+        let of =
+            |group: &Group| -> Vec<_> { group.labels().iter().map(|&label| followed.eigenvalue(run, label)).collect() };
+        let (one, other) = (of(one), of(other));
+        let relative = |a: &nalgebra::Complex<f64>, b: &nalgebra::Complex<f64>| {
+            (a - b).norm() / a.norm().max(b.norm()).max(f64::MIN_POSITIVE)
+        };
+        one.iter().flat_map(|a| other.iter().map(move |b| relative(a, b))).fold(f64::INFINITY, f64::min)
+    };
+    (0..followed.runs.len()).map(at_run).fold(f64::INFINITY, f64::min)
+}
+
+fn sorted(mut grouping: Grouping) -> Grouping {
+    grouping.sort_unstable();
+    grouping
+}
+
+/// Groupings to begin with, the finest first.
+fn candidates(followed: &Followed<'_>, finest: &Grouping) -> Vec<Grouping> {
+    let mut candidates = vec![finest.clone()];
+    let labels: Vec<usize> = finest.iter().flat_map(|group| followed.groups.closed(group).labels().to_vec()).collect();
+    for threshold in SWAPS {
+        candidates.push(united(followed, finest, &labels, |a, b| followed.labels.swap(a, b) > threshold));
+    }
+    candidates.push(united(followed, finest, &labels, |a, b| is_close(followed, a, b)));
+    let (complex, closed): (Vec<&Group>, Vec<&Group>) = finest.iter().partition(|group| !group.is_closed());
+    let all = |groups: &[&Group]| {
+        let (first, rest) = groups.split_first()?;
+        Some(rest.iter().fold((*first).clone(), |whole, group| followed.groups.union(&whole, group)))
+    };
+    candidates.push(sorted(all(&complex).into_iter().chain(all(&closed)).collect()));
+    if finest.iter().any(|group| group.is_closed() || nears_the_axis(followed, group)) {
+        candidates.extend(all(&finest.iter().collect::<Vec<_>>()).map(|whole| vec![followed.groups.closed(&whole)]));
+    }
+    candidates.retain(|grouping| grouping.iter().all(|group| group.size() <= MOST_IN_CANDIDATE));
+    let mut distinct: Vec<Grouping> = Vec::with_capacity(candidates.len());
+    candidates.into_iter().for_each(|candidate| {
+        if !distinct.contains(&candidate) {
+            distinct.push(candidate);
+        }
+    });
+    distinct
+}
+
+/// Whether a grouping of an earlier level is still one: every finest group lies in one of its groups.
+fn is_made_of(grouping: &Grouping, finest: &Grouping) -> bool {
+    let holds = |whole: &Group, part: &Group| {
+        part.labels().iter().all(|label| whole.labels().contains(label)) && (whole.is_closed() || !part.is_closed())
+    };
+    finest.iter().all(|part| grouping.iter().any(|whole| holds(whole, part)))
+}
+
+/// The finest groups with those in one whose labels `belong` together. Half a pair that belongs to the other half, or
+/// to that of another pair, makes the group closed.
+fn united(
+    followed: &Followed<'_>,
+    finest: &Grouping,
+    labels: &[usize],
+    belong: impl Fn(usize, usize) -> bool,
+) -> Grouping {
+    let groups = &followed.groups;
+    let mut grouping: Grouping = finest.clone();
+    for (k, &a) in labels.iter().enumerate() {
+        for &b in labels[..k].iter().filter(|&&b| belong(a, b)) {
+            let holds = |group: &Group, label: usize| groups.closed(group).labels().contains(&label);
+            let (of_a, mut rest): (Vec<Group>, Vec<Group>) = grouping.into_iter().partition(|group| holds(group, a));
+            let (of_b, apart): (Vec<Group>, Vec<Group>) = rest.drain(..).partition(|group| holds(group, b));
+            let mut parts = of_a.into_iter().chain(of_b);
+            let Some(first) = parts.next() else {
+                grouping = apart;
+                continue;
+            };
+            let mut whole = parts.fold(first, |whole, part| groups.union(&whole, &part));
+            // Vectors of modes that coalesce with each other are close to those of their conjugates, too.
+            if groups.is_upper_half(a) != groups.is_upper_half(b) && nears_the_axis(followed, &whole) {
+                whole = groups.closed(&whole);
+            }
+            grouping = apart;
+            grouping.push(whole);
+        }
+    }
+    sorted(grouping)
+}
+
+/// Whether a mode of a complex group slows down so much that it may meet its conjugate nearby.
+fn nears_the_axis(followed: &Followed<'_>, group: &Group) -> bool {
+    group.labels().iter().any(|&label| {
+        let lambdas = || (0..followed.runs.len()).map(|run| followed.eigenvalue(run, label));
+        let lowest = lambdas().map(|lambda| lambda.im.abs()).fold(f64::INFINITY, f64::min);
+        lowest < NEAR_AXIS * lambdas().map(|lambda| lambda.norm()).fold(0.0, f64::max)
+    })
+}
+
+/// Whether the frequencies of two labels that always oscillate come close, compared with the largest distance of the
+/// two.
+fn is_close(followed: &Followed<'_>, one: usize, other: usize) -> bool {
+    if !(followed.groups.is_upper_half(one) && followed.groups.is_upper_half(other)) {
+        return false;
+    }
+    let at_run = |run: usize| followed.eigenvalue(run, one) - followed.eigenvalue(run, other);
+    let runs = 0..followed.runs.len();
+    let largest = runs.clone().map(|run| at_run(run).norm()).fold(0.0, f64::max);
+    let smallest = runs.map(|run| at_run(run).im.abs()).fold(f64::INFINITY, f64::min);
+    smallest < CLOSE * largest
+}

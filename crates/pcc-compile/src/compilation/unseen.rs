@@ -1,0 +1,128 @@
+//! Groups that no run has seen: neighbours that coalesce in a part of the box that the design has not hit.
+//!
+//! Where the unstable share is small, single expansions of modes that coalesce at no run cannot flutter, and neither
+//! residuals at runs left out nor more runs of the same kind show it. So neighbours in frequency are fitted as a pair
+//! by way of trial, and their predicted distance, d = ((λ₁ − λ₂)/2)², is looked at where shares are judged, at many
+//! points. If it comes near zero anywhere, nearer than the design alone would call close, or than d is known, they form
+//! a group; unless their eigenvectors follow them through.
+
+use super::group_fits::{Followed, GroupFit, GroupFits};
+use super::grouping::Grouping;
+use crate::mechanics::spectrum::Group;
+use crate::study::Study;
+use pcc_evaluate::evaluation::{Plan, evaluate_points};
+use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
+use pcc_evaluate::probability::inputs::random_point;
+use pcc_evaluate::probability::random::Purpose;
+
+/// Points at which predicted distances are looked at.
+const POINTS: usize = 50_000;
+
+/// Distances below this share of the largest on the design are close.
+const CLOSE: f64 = 0.2;
+
+/// Pairs whose d nowhere falls below this share of its largest on the design are not on their way to meet.
+const APPROACHING: f64 = 0.5;
+
+/// Residuals of d within which it may be zero.
+const RESIDUALS: f64 = 3.0;
+
+/// Swap ratios below this follow two modes through a crossing.
+const FOLLOWED: f64 = 0.005;
+
+/// The grouping with neighbours united whose predicted distance closes somewhere.
+pub(super) fn with_unseen_groups(
+    study: &Study,
+    followed: &Followed<'_>,
+    mut grouping: Grouping,
+    fits: &mut GroupFits<'_>,
+    can_grow: bool,
+    observer: &dyn Observer,
+) -> Result<Grouping, Interrupted> {
+    for pair in neighbours(followed, &grouping) {
+        let trial = followed.groups.union(&pair[0], &pair[1]);
+        fits.add([&trial], followed, can_grow, observer)?;
+        let Some(fit) = fits.get(&trial).filter(|fit| fit.fits.len() == fit.values.len()) else { continue };
+        if !closes(study, followed, &trial, fit, observer)? {
+            continue;
+        }
+        let holds = |group: &Group| group.labels().iter().any(|label| trial.labels().contains(label));
+        let (parts, mut kept): (Vec<Group>, Vec<Group>) = grouping.iter().cloned().partition(holds);
+        let mut parts = parts.into_iter();
+        let Some(first) = parts.next() else { continue };
+        let whole = parts.fold(first, |whole, part| followed.groups.union(&whole, &part));
+        if whole.is_possible() {
+            kept.push(whole);
+            kept.sort_unstable();
+            grouping = kept;
+        }
+    }
+    fits.add(&grouping, followed, can_grow, observer)?;
+    Ok(grouping)
+}
+
+/// Pairs of single modes that are neighbours in frequency, come closer at some runs than at others, and are not
+/// followed through a crossing.
+fn neighbours(followed: &Followed<'_>, grouping: &Grouping) -> Vec<[Group; 2]> {
+    let mut singles: Vec<&Group> = grouping.iter().filter(|group| !group.is_closed() && group.size() == 1).collect();
+    let mean =
+        |group: &Group| (0..followed.runs.len()).map(|run| followed.eigenvalue(run, group.labels()[0]).im).sum::<f64>();
+    singles.sort_by(|a, b| mean(a).total_cmp(&mean(b)).then(a.cmp(b)));
+    let crosses = |a: &Group, b: &Group| {
+        let (a, b) = (a.labels()[0], b.labels()[0]);
+        let gap = |run: usize| followed.eigenvalue(run, b).im - followed.eigenvalue(run, a).im;
+        let signs: Vec<bool> = (0..followed.runs.len()).map(|run| gap(run) > 0.0).collect();
+        signs.iter().any(|sign| *sign != signs[0]) && followed.labels.swap(a, b) < FOLLOWED
+    };
+    let approaches = |a: &Group, b: &Group| {
+        let (a, b) = (a.labels()[0], b.labels()[0]);
+        let distance = |run: usize| (followed.eigenvalue(run, b) - followed.eigenvalue(run, a)).norm_sqr();
+        let distances = || (0..followed.runs.len()).map(distance);
+        distances().fold(f64::INFINITY, f64::min) < APPROACHING * distances().fold(0.0, f64::max)
+    };
+    singles
+        .windows(2)
+        .filter(|pair| approaches(pair[0], pair[1]) && !crosses(pair[0], pair[1]))
+        .map(|pair| [pair[0].clone(), pair[1].clone()])
+        .collect()
+}
+
+/// Whether d of a pair comes near zero at some of the points.
+fn closes(
+    study: &Study,
+    followed: &Followed<'_>,
+    trial: &Group,
+    fit: &GroupFit,
+    observer: &dyn Observer,
+) -> Result<bool, Interrupted> {
+    let (a, b) = (trial.labels()[0], trial.labels()[1]);
+    let largest = (0..followed.runs.len())
+        .map(|run| (followed.eigenvalue(run, a) - followed.eigenvalue(run, b)).norm())
+        .fold(0.0, f64::max);
+    // The components of a pair are Re s, Im s, Re c₀, Im c₀ with c₀ = −d.
+    let residual: f64 = fit.fits[2..]
+        .iter()
+        .map(|one| {
+            let left_out = one.result.leave_one_out_residuals.as_deref().unwrap_or_default();
+            left_out.iter().map(|rest| rest * rest).sum::<f64>() / left_out.len().max(1) as f64
+        })
+        .sum::<f64>()
+        .sqrt();
+    let near = (0.5 * CLOSE * largest).powi(2).max(RESIDUALS * residual);
+    let surrogate = super::record::of_fits(study, &fit.output, &fit.fits);
+    let plan = Plan::new(&surrogate);
+    const PART: usize = 4096;
+    let found = try_map(POINTS.div_ceil(PART), |part| {
+        observer.check()?;
+        let range = part * PART..POINTS.min((part + 1) * PART);
+        let mut points = vec![vec![0.0; study.inputs.dimension()]; range.len()];
+        for (point, i) in points.iter_mut().zip(range) {
+            random_point(&study.inputs, study.seed, Purpose::Design, super::decision::FIRST_INDEX + i as u64, point);
+        }
+        let block = evaluate_points(&surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        Ok::<bool, Interrupted>(
+            block.components[2].iter().zip(&block.components[3]).any(|(re, im)| re.hypot(*im) < near),
+        )
+    })?;
+    Ok(found.contains(&true))
+}

@@ -1,0 +1,97 @@
+//! Names of eigenvalues, and what they say of stability.
+
+use num_complex::Complex;
+use std::fmt;
+
+/// What the eigenvalue with the largest Re λ says of a system.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// Re λ < 0.
+    Stable,
+    /// Re λ ≥ 0, and it oscillates.
+    Flutter,
+    /// λ ≥ 0, and it is real.
+    Divergence,
+}
+
+impl Verdict {
+    /// That of the eigenvalue with the largest Re λ. What is not a number is never stable.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use num_complex::Complex;
+    /// use pcc_evaluate::components::Verdict;
+    /// assert_eq!(Verdict::of(Complex::new(-0.1, 20.0)), Verdict::Stable);
+    /// assert_eq!(Verdict::of(Complex::new(0.1, 20.0)), Verdict::Flutter);
+    /// assert_eq!(Verdict::of(Complex::new(0.1, 0.0)), Verdict::Divergence);
+    /// ```
+    pub fn of(top: Complex<f64>) -> Self {
+        if top.re < 0.0 {
+            Self::Stable
+        } else if top.im == 0.0 {
+            Self::Divergence
+        } else {
+            Self::Flutter
+        }
+    }
+
+    /// In one word, for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stable => "stable",
+            Self::Flutter => "flutter",
+            Self::Divergence => "divergence",
+        }
+    }
+}
+
+/// The name of one eigenvalue that an output yields.
+///
+/// A mode is a conjugate pair, or the two real eigenvalues that it becomes where it is overdamped or diverges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Label {
+    /// The eigenvalue of a mode with Im λ > 0; of two real ones the larger.
+    Mode(usize),
+    /// Its conjugate; of two real ones the smaller.
+    Second(usize),
+    /// A real eigenvalue that belongs to no mode.
+    Real(usize),
+}
+
+impl Label {
+    /// The column of Re λ in results: `re_3`, `re_3_b`, `real_1`.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc_evaluate::components::Label;
+    /// let names = [Label::Mode(3), Label::Second(3), Label::Real(1)].map(Label::growth_rate);
+    /// assert_eq!(names, ["re_3", "re_3_b", "real_1"]);
+    /// ```
+    pub fn growth_rate(self) -> String {
+        match self {
+            Self::Mode(mode) => format!("re_{mode}"),
+            Self::Second(mode) => format!("re_{mode}_b"),
+            Self::Real(number) => format!("real_{number}"),
+        }
+    }
+
+    /// The number of the mode, if it is that of a mode's first eigenvalue.
+    pub fn mode(self) -> Option<usize> {
+        match self {
+            Self::Mode(mode) => Some(mode),
+            Self::Second(_) | Self::Real(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Label {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mode(mode) => write!(f, "mode {mode}"),
+            Self::Second(mode) => write!(f, "second eigenvalue of mode {mode}"),
+            Self::Real(number) => write!(f, "real_{number}"),
+        }
+    }
+}

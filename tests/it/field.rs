@@ -1,0 +1,129 @@
+//! Systems in the manner of those that people bring: real, overdamped and crossing eigenvalues.
+//!
+//! The studies are in `tests/data/field`, built with their defaults. What is right comes from `truth.py` there, which
+//! shares no code with pcc.
+
+use crate::support::command::{output, refusal};
+use crate::support::{repository, text};
+use pcc_compile::compilation::build;
+use pcc_compile::reference::ModelSample;
+use pcc_compile::study::Study;
+use pcc_evaluate::components::Verdict;
+use pcc_evaluate::foundation::Silent;
+use pcc_evaluate::surrogate::Surrogate;
+use std::fs;
+
+/// Points on which surrogate and model are compared.
+const POINTS: u64 = 20_000;
+
+/// Names, most model runs, and points in a hundred that may be misclassified.
+const BARS: [(&str, u64, f64); 12] = [
+    ("cap", 20, 0.005),
+    ("overdamped", 20, 0.005),
+    ("count", 20, 0.005),
+    ("bike", 20, 0.01),
+    ("bike-from-standstill", 20, 0.01),
+    ("rayleigh", 40, 0.01),
+    ("beam", 40, 0.01),
+    ("wing", 40, 0.01),
+    ("driveline", 30, 0.01),
+    ("axi", 40, 0.01),
+    ("blades", 60, 0.01),
+    ("bearings", 120, 0.3),
+];
+
+fn study(name: &str) -> Study {
+    Study::from_toml(&text(&format!("tests/data/field/{name}.toml"))).unwrap()
+}
+
+/// The surrogate of a study, with its defaults.
+pub fn built(name: &str) -> Surrogate {
+    build(&study(name), &Silent).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Stable, flutter and divergence shares by NumPy.
+fn truth(name: &str) -> [f64; 3] {
+    let table = text("tests/data/field/truth.csv");
+    let row = table.lines().find(|line| line.split(',').next() == Some(name)).unwrap();
+    let cells: Vec<f64> = row.split(',').skip(2).take(3).map(|cell| cell.parse().unwrap()).collect();
+    cells.try_into().unwrap()
+}
+
+#[test]
+fn surrogates_of_systems_from_the_field_agree_with_their_models_and_with_numpy() {
+    for (name, most_runs, most_misclassified) in BARS {
+        let (study, surrogate) = (study(name), built(name));
+        let sample = ModelSample::new(&study, POINTS, 7, &Silent).unwrap();
+        let comparison = sample.compare(&surrogate).unwrap();
+        let runs = surrogate.training.counts.direct_computations;
+        assert!(runs <= most_runs, "{name}: {runs} runs");
+        // One point more: a bar of less than that cannot be told from it on so few.
+        let misclassified = comparison.misclassified_percent();
+        let allowed = most_misclassified + 100.0 / POINTS as f64;
+        assert!(misclassified <= allowed, "{name}: {misclassified} %");
+
+        let block = sample.surrogate_at(&surrogate, POINTS as usize).unwrap();
+        let tops = block.max_re.iter().zip(&block.top_frequency);
+        let verdicts: Vec<Verdict> = tops.map(|(&re, &im)| Verdict::of(num_complex::Complex::new(re, im))).collect();
+        let kinds = [Verdict::Stable, Verdict::Flutter, Verdict::Divergence];
+        for (kind, expected) in kinds.into_iter().zip(truth(name)) {
+            let share = verdicts.iter().filter(|verdict| **verdict == kind).count() as f64 / POINTS as f64;
+            // Four standard errors of a share, and what is misclassified.
+            let tolerance = 4.0 * (expected * (1.0 - expected) / POINTS as f64).sqrt() + 0.01 * allowed;
+            assert!((share - expected).abs() <= tolerance, "{name}: {kind:?} {share}, not {expected}");
+        }
+    }
+}
+
+/// The benchmark bicycle: weave is stable from 4.2924 m/s on, capsize until 6.0243 m/s.
+#[test]
+fn a_window_of_stability_has_two_crossings() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::copy(repository("tests/data/field/bike.toml"), path.join("bike.toml")).unwrap();
+    output(path, &["build", "bike.toml"]);
+    let said = output(path, &["eval", "bike.pcc", "-n", "20000", "--critical", "v", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let crossings = report["critical"]["crossings"].as_array().unwrap();
+    let expected = [(1, "regained", "flutter", 4.29238253634), (2, "lost", "divergence", 6.02426201539)];
+    assert_eq!(crossings.len(), expected.len(), "{crossings:?}");
+    for (crossing, (order, stability, kind, value)) in crossings.iter().zip(expected) {
+        assert_eq!(
+            (&crossing["order"], &crossing["stability"], &crossing["kind"]),
+            (&order.into(), &stability.into(), &kind.into())
+        );
+        assert!((crossing["mean"].as_f64().unwrap() - value).abs() < 1e-3, "{crossing}");
+    }
+    assert!((report["stable_proportion"].as_f64().unwrap() - 0.34638).abs() < 0.015);
+    let share = |name: &str| report[name].as_f64().unwrap();
+    assert!(
+        (share("flutter_proportion") + share("divergence_proportion") - share("unstable_proportion")).abs() < 1e-12
+    );
+    let text = output(path, &["eval", "bike.pcc", "-n", "20000", "--critical", "v", "--events", "flutter,divergence"]);
+    insta::with_settings!({filters => vec![(r"in [0-9.]+ s \([0-9 ]+ per second\)", "in [time]")]}, {
+        insta::assert_snapshot!(text);
+    });
+
+    // Eigenvalues at v = 5 m/s, where the windows are.
+    fs::write(path.join("points.csv"), "v\n5\n").unwrap();
+    for (command, name) in [("eval", "bike.pcc"), ("reference", "bike.toml")] {
+        output(path, &[command, name, "--points", "points.csv", "--out", "out.csv"]);
+        let out = fs::read_to_string(path.join("out.csv")).unwrap();
+        let (header, row) = out.trim_end().split_once('\n').unwrap();
+        assert_eq!(header, "v,re_1,im_1,re_1_b,real_1,real_2,max_re,stable,verdict", "{command}");
+        assert!(row.ends_with(",1,stable"), "{command}: {row}");
+        let cells: Vec<f64> = row.split(',').take(7).map(|cell| cell.parse().unwrap()).collect();
+        for (cell, expected) in cells[1..].iter().zip([-0.7753, 4.4649, -0.7753, -0.3229, -14.078, -0.3229]) {
+            assert!((cell - expected).abs() < 1e-3, "{command}: {row}");
+        }
+    }
+}
+
+#[test]
+fn the_paper_s_target_refuses_a_changing_number_of_modes_and_names_the_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = text("tests/data/field/bike-from-standstill.toml") + "\n[spectrum]\ntarget = \"eigenvalues\"\n";
+    fs::write(folder.path().join("bike.toml"), study).unwrap();
+    let message = refusal(folder.path(), &["build", "bike.toml"]);
+    assert!(message.contains("modes oscillate at") && message.contains("\"invariants\""), "{message}");
+}

@@ -1,0 +1,69 @@
+//! Builds the studies of `tests/data/field` with their defaults and compares each surrogate with its model.
+//!
+//! `cargo run --release -p pcc-tools --bin field_cases -- [NAME …] [--points N] [--seeds N]`: a row per study and seed
+//! with model runs, seconds of the build, share of misclassified points, stable, flutter and divergence shares of both,
+//! the true over the estimated error, and the groups.
+
+use pcc_compile::compilation::build;
+use pcc_compile::reference::ModelSample;
+use pcc_compile::study::Study;
+use pcc_evaluate::foundation::Silent;
+use std::path::Path;
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (mut names, mut points, mut seeds) = (Vec::new(), 100_000, 5);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--points" => points = arguments.next().unwrap_or_default().parse()?,
+            "--seeds" => seeds = arguments.next().unwrap_or_default().parse()?,
+            name => names.push(name.to_owned()),
+        }
+    }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/field");
+    if names.is_empty() {
+        let studies = std::fs::read_dir(&folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        names = studies.filter_map(|name| name.strip_suffix(".toml").map(str::to_owned)).collect();
+        names.sort();
+    }
+    println!("study seed runs seconds misclassified% stable% model% flutter% divergence% true/estimated groups");
+    for name in names {
+        let text = std::fs::read_to_string(folder.join(format!("{name}.toml")))?;
+        let study = Study::from_toml_in(&text, &folder)?;
+        let sample = ModelSample::new(&study, points, 1000, &Silent)?;
+        for seed in 1..=seeds {
+            let seeded = Study { seed, ..study.clone() };
+            let start = Instant::now();
+            let surrogate = match build(&seeded, &Silent) {
+                Ok(surrogate) => surrogate,
+                Err(error) => {
+                    println!("{name} {seed} {error}");
+                    continue;
+                }
+            };
+            let seconds = start.elapsed().as_secs_f64();
+            let comparison = sample.compare(&surrogate)?;
+            let block = sample.surrogate_at(&surrogate, points as usize)?;
+            let share = |holds: &dyn Fn(f64, f64) -> bool| {
+                let found = block.max_re.iter().zip(&block.top_frequency).filter(|(re, im)| holds(**re, **im)).count();
+                100.0 * found as f64 / points as f64
+            };
+            let (stable, model) = (comparison.proportion_surrogate(), comparison.proportion_model());
+            let ratio =
+                surrogate.decision.proportion_error.map_or(f64::NAN, |error| (stable - model).abs() / model / error);
+            let groups: Vec<&str> = surrogate.outputs.iter().map(|output| output.name.as_str()).collect();
+            println!(
+                "{name} {seed} {} {seconds:.2} {:.4} {:.3} {:.3} {:.3} {:.3} {ratio:.2} [{}]",
+                surrogate.training.counts.direct_computations,
+                comparison.misclassified_percent(),
+                100.0 * stable,
+                100.0 * model,
+                share(&|re, im| re >= 0.0 && im != 0.0),
+                share(&|re, im| re >= 0.0 && im == 0.0),
+                groups.join(" | "),
+            );
+        }
+    }
+    Ok(())
+}
