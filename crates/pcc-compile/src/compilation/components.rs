@@ -20,6 +20,17 @@ pub(super) struct ComponentFit<'a> {
     study: &'a Study,
     recurrences: Vec<Recurrence>,
     solver: Box<dyn Solver + 'a>,
+    /// What trials are fitted by.
+    trial: Option<Box<dyn Solver + 'a>>,
+}
+
+/// How thoroughly components are fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Care {
+    /// Well enough to compare groupings: by one method, where the study's chooses among several.
+    Trial,
+    /// By the study's method.
+    Full,
 }
 
 impl<'a> ComponentFit<'a> {
@@ -30,7 +41,12 @@ impl<'a> ComponentFit<'a> {
         let solver = study.fit.method.solver(FitSize { inputs, maximum: study.design.maximum, derivatives })?;
         let recurrences =
             study.inputs.inputs().iter().map(|input| input.marginal.family().recurrence(degree)).collect();
-        Ok(Self { study, recurrences, solver })
+        Ok(Self { study, recurrences, solver, trial: study.fit.method.trial_solver() })
+    }
+
+    /// Whether trials are fitted as everything else.
+    pub fn trials_are_full(&self) -> bool {
+        self.trial.is_none()
     }
 
     /// What a component starts from that was fitted on no smaller design.
@@ -55,12 +71,13 @@ impl<'a> ComponentFit<'a> {
         tables: &BasisTables,
         responses: &[Response<'_>],
         previous: &[Previous],
-        can_grow: bool,
+        (care, can_grow): (Care, bool),
         observer: &dyn Observer,
     ) -> Result<Option<Vec<(ComponentResult, Previous)>>, Interrupted> {
+        let solver = self.trial.as_ref().filter(|_| care == Care::Trial).unwrap_or(&self.solver);
         observer.begin("fitting components", responses.len() as u64);
         let found = try_map(responses.len(), |id| {
-            let found = self.solver.fit(tables, responses[id], &previous[id], can_grow, observer);
+            let found = solver.fit(tables, responses[id], &previous[id], can_grow, observer);
             observer.advance(1);
             found
         });

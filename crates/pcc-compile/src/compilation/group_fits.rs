@@ -3,7 +3,7 @@
 //! Many groupings share groups: each group is fitted once per design, and starts from what the smaller designs have
 //! taught of it.
 
-use super::components::{ComponentFit, ComponentResult};
+use super::components::{Care, ComponentFit, ComponentResult};
 use crate::campaign::Run;
 use crate::fitting::design::Samples;
 use crate::fitting::fit::method::Previous;
@@ -58,6 +58,8 @@ pub(super) struct GroupFit {
     pub resolutions: Vec<f64>,
     /// Per component, its fit.
     pub fits: Vec<ComponentResult>,
+    /// How carefully it was fitted.
+    pub care: Care,
     /// The largest error of its eigenvalues at runs left out, relative to what matters; infinite if it is not known.
     pub score: f64,
 }
@@ -67,41 +69,49 @@ pub(super) struct GroupFits<'a> {
     study: &'a Study,
     fit: ComponentFit<'a>,
     current: HashMap<Group, GroupFit>,
-    /// What the current design and smaller ones have taught of the components of each group.
+    /// What smaller designs have taught of the components of each group.
     previous: HashMap<Group, Vec<Previous>>,
+    /// What the current design teaches.
+    learnt: HashMap<Group, Vec<Previous>>,
     tables: Option<BasisTables>,
 }
 
 impl<'a> GroupFits<'a> {
     pub fn new(study: &'a Study, fit: ComponentFit<'a>) -> Self {
-        Self { study, fit, current: HashMap::new(), previous: HashMap::new(), tables: None }
+        Self { study, fit, current: HashMap::new(), previous: HashMap::new(), learnt: HashMap::new(), tables: None }
     }
 
     /// Begins a design: nothing is fitted on it yet.
     pub fn begin(&mut self, followed: &Followed<'_>) {
         self.current.clear();
+        self.previous.extend(self.learnt.drain());
         self.tables = Some(self.fit.tables(followed.samples, followed.has_derivatives));
     }
 
     /// Forgets what smaller designs have taught, because labels are no longer the same.
     pub fn forget(&mut self) {
         self.previous.clear();
+        self.learnt.clear();
     }
 
-    /// Fits those of `groups` that are not fitted yet on this design.
+    /// Fits those of `groups` that are not fitted yet on this design, with that care at least.
     pub fn add<'g>(
         &mut self,
         groups: impl IntoIterator<Item = &'g Group>,
         followed: &Followed<'_>,
-        can_grow: bool,
+        (care, can_grow): (Care, bool),
         observer: &dyn Observer,
     ) -> Result<(), Interrupted> {
-        let mut missing: Vec<&Group> = groups.into_iter().filter(|group| !self.current.contains_key(group)).collect();
+        let is_missing = |group: &&Group| self.current.get(group).is_none_or(|fit| fit.care < care);
+        let mut missing: Vec<&Group> = groups.into_iter().filter(is_missing).collect();
         missing.sort_unstable();
         missing.dedup();
-        let Some(tables) = self.tables.as_ref().filter(|_| !missing.is_empty()) else { return Ok(()) };
-        let mut new: Vec<(&Group, GroupFit)> =
-            missing.into_iter().map(|group| (group, self.unfitted(group, followed))).collect();
+        let mut new: Vec<(&Group, GroupFit)> = Vec::with_capacity(missing.len());
+        for group in missing {
+            let known = self.current.remove(group);
+            new.push((group, known.unwrap_or_else(|| self.unfitted(group, followed))));
+        }
+        let Some(tables) = self.tables.as_ref().filter(|_| !new.is_empty()) else { return Ok(()) };
         let responses: Vec<Response<'_>> = new.iter().flat_map(|(_, fit)| fit.responses()).collect();
         let previous: Vec<Previous> = new
             .iter()
@@ -110,12 +120,12 @@ impl<'a> GroupFits<'a> {
                 None => vec![self.fit.nothing(); fit.values.len()],
             })
             .collect();
-        let found = self.fit.fit(tables, &responses, &previous, can_grow, observer)?;
+        let found = self.fit.fit(tables, &responses, &previous, (care, can_grow), observer)?;
         let mut found = found.unwrap_or_default().into_iter();
         for (group, fit) in &mut new {
             let (fits, learnt) = found.by_ref().take(fit.values.len()).unzip();
-            fit.fits = fits;
-            self.previous.insert((*group).clone(), learnt);
+            (fit.fits, fit.care) = (fits, if self.fit.trials_are_full() { Care::Full } else { care });
+            self.learnt.insert((*group).clone(), learnt);
             fit.score = score(fit, group, followed);
         }
         self.current.extend(new.into_iter().map(|(group, fit)| (group.clone(), fit)));
@@ -157,6 +167,7 @@ impl<'a> GroupFits<'a> {
             eigenvalues,
             values,
             fits: Vec::new(),
+            care: Care::Trial,
             score: f64::INFINITY,
         }
     }

@@ -16,6 +16,7 @@
 //!
 //! No model is run for any of this, so it is done anew at every level.
 
+use super::components::Care;
 use super::group_fits::{Followed, GroupFits};
 use crate::mechanics::spectrum::Group;
 use pcc_evaluate::foundation::{Interrupted, Observer};
@@ -45,6 +46,9 @@ const MOST_IN_CANDIDATE: usize = 8;
 
 /// Neighbours that a group is merged with by way of trial, the closest.
 const TRIED_NEIGHBOURS: usize = 4;
+
+/// Equations, values and derivatives, of a design on which trials are fitted with full care.
+const SMALL_DESIGN: usize = 150;
 
 /// A way to group all labels of interest.
 pub(super) type Grouping = Vec<Group>;
@@ -100,19 +104,26 @@ struct Choice<'c, 'f, 'a> {
 
 impl Choice<'_, '_, '_> {
     fn score_of(&mut self, group: &Group) -> Result<f64, Interrupted> {
-        self.fits.add([group], self.followed, self.can_grow, self.observer)?;
+        self.fits.add([group], self.followed, (self.care(), self.can_grow), self.observer)?;
         Ok(self.fits.get(group).map_or(f64::INFINITY, |fit| fit.score))
     }
 
+    /// Small designs cost little, and there methods differ most.
+    fn care(&self) -> Care {
+        let inputs = if self.followed.has_derivatives { self.followed.samples.dimension() } else { 0 };
+        if self.followed.runs.len() * (1 + inputs) <= SMALL_DESIGN { Care::Full } else { Care::Trial }
+    }
+
+    /// The score of a grouping that is likely to stay.
     fn score_of_all(&mut self, grouping: &Grouping) -> Result<f64, Interrupted> {
-        self.fits.add(grouping, self.followed, self.can_grow, self.observer)?;
+        self.fits.add(grouping, self.followed, (Care::Full, self.can_grow), self.observer)?;
         let scores: Vec<f64> = grouping.iter().map(|group| self.score_of(group)).collect::<Result<_, _>>()?;
         Ok(scores.into_iter().fold(0.0, f64::max))
     }
 
     /// Merges the worst group as long as that is worth it; the grouping with its score.
     fn merged(&mut self, mut grouping: Grouping) -> Result<(Grouping, f64), Interrupted> {
-        self.fits.add(&grouping, self.followed, self.can_grow, self.observer)?;
+        self.fits.add(&grouping, self.followed, (self.care(), self.can_grow), self.observer)?;
         loop {
             self.observer.check()?;
             let mut scores = Vec::with_capacity(grouping.len());
@@ -127,7 +138,12 @@ impl Choice<'_, '_, '_> {
                 return Ok((grouping, score));
             }
             let trials = self.trials(&grouping, worst);
-            self.fits.add(trials.iter().map(|(group, _)| group), self.followed, self.can_grow, self.observer)?;
+            self.fits.add(
+                trials.iter().map(|(group, _)| group),
+                self.followed,
+                (self.care(), self.can_grow),
+                self.observer,
+            )?;
             let mut best: Option<(f64, Group, Option<usize>)> = None;
             for (group, other) in trials {
                 let merged = self.score_of(&group)?;

@@ -1,7 +1,7 @@
 //! Levels whose modes have frequency ranks: the paper's way, and that of methods that ask for larger designs.
 
 use super::BuildError;
-use super::components::{ComponentFit, ComponentResult};
+use super::components::{Care, ComponentFit, ComponentResult};
 use super::evaluations::{Evaluations, Level, groups};
 use crate::fitting::fit::method::Previous;
 use pcc_evaluate::components::Output;
@@ -35,7 +35,7 @@ impl<'a> RankedModes<'a> {
         let responses = level.responses();
         let with_slopes = responses.iter().any(|response| response.gradients.is_some());
         let tables = self.fit.tables(&level.samples, with_slopes);
-        let found = self.fit.fit(&tables, &responses, &self.previous, can_grow, observer)?;
+        let found = self.fit.fit(&tables, &responses, &self.previous, (Care::Full, can_grow), observer)?;
         let Some(found) = found else { return Ok(None) };
         let (results, previous) = found.into_iter().unzip();
         self.previous = previous;

@@ -6,6 +6,7 @@
 //! points. If it comes near zero anywhere, nearer than the design alone would call close, or than d is known, they form
 //! a group; unless their eigenvectors follow them through.
 
+use super::components::Care;
 use super::group_fits::{Followed, GroupFit, GroupFits};
 use super::grouping::Grouping;
 use crate::mechanics::spectrum::Group;
@@ -41,7 +42,7 @@ pub(super) fn with_unseen_groups(
 ) -> Result<Grouping, Interrupted> {
     for pair in neighbours(followed, &grouping) {
         let trial = followed.groups.union(&pair[0], &pair[1]);
-        fits.add([&trial], followed, can_grow, observer)?;
+        fits.add([&trial], followed, (Care::Trial, can_grow), observer)?;
         let Some(fit) = fits.get(&trial).filter(|fit| fit.fits.len() == fit.values.len()) else { continue };
         if !closes(study, followed, &trial, fit, observer)? {
             continue;
@@ -57,7 +58,7 @@ pub(super) fn with_unseen_groups(
             grouping = kept;
         }
     }
-    fits.add(&grouping, followed, can_grow, observer)?;
+    fits.add(&grouping, followed, (Care::Full, can_grow), observer)?;
     Ok(grouping)
 }
 

@@ -293,6 +293,14 @@ impl FitMethod {
         }
     }
 
+    /// A quicker solver to compare what might be fitted; `None` if the method itself is as quick.
+    pub fn trial_solver(&self) -> Option<Box<dyn Solver + '_>> {
+        match self {
+            Self::Auto(settings) | Self::Omp(settings) => Some(Box::new(minimum_norm::ready(settings))),
+            Self::MinimumNorm(_) | Self::Stepwise(_) | Self::Gpc(_) | Self::MultiElement(_) => None,
+        }
+    }
+
     /// Name in study files.
     pub fn name(&self) -> &'static str {
         self.profile().name
