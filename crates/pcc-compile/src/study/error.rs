@@ -269,6 +269,14 @@ pub enum StudyError {
         /// The largest design that fits.
         fitting: usize,
     },
+    /// An input has the name of a column of results.
+    #[error("{place}: results have a column {name}, so that no input can have this name; choose another")]
+    ResultColumn {
+        /// Where.
+        place: Place,
+        /// The name.
+        name: String,
+    },
     /// The inputs do not form a space.
     #[error("{place}: {cause}")]
     Inputs {

@@ -11,6 +11,7 @@ use super::settings::{DesignKind, DesignSettings, FitSettings, SpectrumSettings}
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::mechanics::model::Parameter;
 use crate::mechanics::spectrum::{Modes, Target};
+use pcc_evaluate::components::is_result_column;
 use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
 
 /// Design sizes above this need more memory for the regression than a workstation has.
@@ -167,6 +168,9 @@ impl Lines<'_> {
         let mut inputs = Vec::new();
         for (name, raw) in table.into_inner().0 {
             let parameter = self.parameter_of_kind(kind, "inputs", &name, &raw)?;
+            if is_result_column(&name) {
+                return Err(StudyError::ResultColumn { place: self.place(format!("inputs.{name}"), &raw), name });
+            }
             inputs.push(Input { marginal: self.marginal(&name, parameter, &raw)?, name });
         }
         InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })

@@ -46,6 +46,27 @@ impl Verdict {
     }
 }
 
+/// Whether a column of results may have this name, so that an input must not.
+///
+/// # Examples
+///
+/// ```
+/// use pcc_evaluate::components::is_result_column;
+/// assert!(["max_re", "stable", "verdict", "re_1", "im_12", "re_3_b", "real_2"].into_iter().all(is_result_column));
+/// assert!(!["mu", "re", "re_", "real_x", "re_1_c", "stable_share"].into_iter().any(is_result_column));
+/// ```
+pub fn is_result_column(name: &str) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let numbered = |start: &str, end: &str| {
+        name.strip_prefix(start).and_then(|rest| rest.strip_suffix(end)).is_some_and(is_number)
+    };
+    matches!(name, "max_re" | "stable" | "verdict")
+        || numbered("re_", "")
+        || numbered("im_", "")
+        || numbered("re_", "_b")
+        || numbered("real_", "")
+}
+
 /// The name of one eigenvalue that an output yields.
 ///
 /// A mode is a conjugate pair, or the two real eigenvalues that it becomes where it is overdamped or diverges.
