@@ -1,6 +1,7 @@
 //! A verified bound, freshly made.
 
 use pcc_evaluate::foundation::count;
+use pcc_evaluate::probability::statistics::DiscordantCounts;
 use pcc_evaluate::surrogate::{Certificate, Surrogate};
 use serde::Serialize;
 use std::fmt;
@@ -48,6 +49,8 @@ pub struct CertifyReport {
     pub study: String,
     /// Where the surrogate with its certificates is.
     pub file: String,
+    /// Whether the new certificate excludes the surrogate's own share.
+    pub contradicts_surrogate: bool,
     /// All its certificates, the new one last.
     pub certificates: Vec<CertificateReport>,
     /// Wall-clock time.
@@ -58,7 +61,12 @@ impl CertifyReport {
     /// The report of a surrogate that was given a certificate and written to `file`.
     pub fn new(surrogate: &Surrogate, file: String, elapsed_seconds: f64) -> Self {
         let study = surrogate.provenance.study_name.clone();
-        Self { study, file, certificates: CertificateReport::of(surrogate), elapsed_seconds }
+        let contradicts_surrogate = surrogate.certificates.last().is_some_and(|new| {
+            let Certificate { samples, falsely_stable, falsely_unstable, level, .. } = *new;
+            let [lower, upper] = DiscordantCounts { samples, falsely_stable, falsely_unstable }.difference(level);
+            lower > 0.0 || upper < 0.0
+        });
+        Self { study, file, contradicts_surrogate, certificates: CertificateReport::of(surrogate), elapsed_seconds }
     }
 }
 
@@ -69,6 +77,9 @@ impl fmt::Display for CertifyReport {
             return Ok(());
         };
         writeln!(f, "{}: {} fresh model runs, {:.2} s\n", self.study, count(new.samples), self.elapsed_seconds)?;
+        if self.contradicts_surrogate {
+            writeln!(f, "warning: these runs contradict the surrogate: its own share lies outside the bound\n")?;
+        }
         writeln!(f, "  verified bound         {:.3} % to {:.3} % stable", 100.0 * new.lower, 100.0 * new.upper)?;
         writeln!(f, "  level                  {}, whatever the surrogate", new.level)?;
         if !same_problem {

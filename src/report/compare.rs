@@ -1,14 +1,19 @@
 //! A surrogate judged against its model.
 
+use super::survey::LEVEL;
 use super::table::{Align, Table, significant};
 use pcc_compile::reference::Comparison;
 use pcc_evaluate::foundation::count;
+use pcc_evaluate::probability::statistics::DiscordantCounts;
 use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
 
 /// Relative errors below this are not worth digits, in percent.
 const SMALLEST_ERROR: f64 = 1e-4;
+
+/// The true error is seldom more than three times the estimated one.
+const SEVERAL: f64 = 3.0;
 
 /// Surrogate and model on the same points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,6 +30,8 @@ pub struct CompareReport {
     pub proportion_model: f64,
     /// The surrogate's share of stable points.
     pub proportion_surrogate: f64,
+    /// Whether the true share differs from the surrogate's by more than the surrogate says of its error.
+    pub contradicts_surrogate: bool,
     /// Relative error of the share; null if the model is never stable and the surrogate sometimes is.
     pub relative_error_percent: Option<f64>,
     /// Points on whose stability the two disagree.
@@ -89,6 +96,7 @@ impl CompareReport {
             direct_computations: surrogate.training.counts.direct_computations,
             proportion_model: comparison.proportion_model(),
             proportion_surrogate: comparison.proportion_surrogate(),
+            contradicts_surrogate: contradicts(surrogate, comparison),
             relative_error_percent: comparison.relative_error_percent(),
             misclassified_percent: comparison.misclassified_percent(),
             falsely_stable: comparison.falsely_stable,
@@ -99,6 +107,16 @@ impl CompareReport {
             elapsed_seconds,
         }
     }
+}
+
+/// Whether the model's share differs from the surrogate's by more than a few times its estimated error, at 95 %.
+fn contradicts(surrogate: &Surrogate, comparison: &Comparison) -> bool {
+    let &Comparison { samples, falsely_stable, falsely_unstable, .. } = comparison;
+    let [lower, upper] = DiscordantCounts { samples, falsely_stable, falsely_unstable }.difference(LEVEL);
+    // A surrogate that says nothing of its error is not contradicted.
+    let Some(relative) = surrogate.decision.proportion_error else { return false };
+    let stated = SEVERAL * (relative * comparison.proportion_surrogate()).max(SMALLEST_ERROR / 100.0);
+    lower > stated || upper < -stated
 }
 
 /// Three digits, a bound below those that mean something, or a dash where an error has no meaning.
@@ -120,6 +138,9 @@ impl fmt::Display for CompareReport {
             self.elapsed_seconds,
             self.seed
         )?;
+        if self.contradicts_surrogate {
+            writeln!(f, "warning: the model contradicts the surrogate by more than it says of its error\n")?;
+        }
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         writeln!(f, "  stable, model          {}", percent(self.proportion_model))?;
         writeln!(f, "  stable, surrogate      {}", percent(self.proportion_surrogate))?;

@@ -83,6 +83,22 @@ impl Confidence {
         }
     }
 
+    /// What to say first where a certificate excludes the share of the surrogate.
+    pub(super) fn contradiction(surrogate: &Surrogate, share: f64) -> Option<String> {
+        let own = |certificate: &&Certificate| certificate.problem_hash == surrogate.provenance.problem_hash;
+        let excludes = |certificate: &&Certificate| share < certificate.lower || share > certificate.upper;
+        let certificate = surrogate.certificates.iter().filter(own).find(excludes)?;
+        let bound = Interval { lower: certificate.lower, upper: certificate.upper, level: certificate.level };
+        Some(format!(
+            "a certificate contradicts the surrogate: by {} fresh model runs {} to {} are stable, not {}; trust the certificate, and \
+             build with more runs",
+            count(certificate.samples),
+            percent(bound.lower),
+            percent(bound.upper),
+            percent(share)
+        ))
+    }
+
     /// Takes back what is known of the whole domain only.
     pub(super) fn confine(&mut self) {
         self.basis.is_confined = true;

@@ -91,6 +91,8 @@ pub struct OnlyInText {
     pub merged_parts: Option<usize>,
     /// Randomisations that were asked for.
     pub requested_replicates: u32,
+    /// Whether the first warning is that a certificate excludes the share, which is said before it.
+    pub is_contradicted: bool,
 }
 
 /// Moments and range.
@@ -219,6 +221,7 @@ impl EvalReport {
             has_all_samples: answer.is_complete,
             merged_parts: found.merged_parts,
             requested_replicates: question.replicates,
+            is_contradicted: false,
         };
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
@@ -245,6 +248,10 @@ impl EvalReport {
         report.events = events(question, cell);
         (report.histograms, report.quantiles) = histograms(question, &answer.histograms);
         report.warnings = FitReport::warnings_of(surrogate);
+        if is_whole && let Some(contradiction) = Confidence::contradiction(surrogate, stable.value()) {
+            report.warnings.insert(0, contradiction);
+            report.only_in_text.is_contradicted = true;
+        }
         report.warnings.extend(unbalanced(question));
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
@@ -319,7 +326,12 @@ impl EvalReport {
             warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
-            only_in_text: OnlyInText { has_all_samples: true, merged_parts: None, requested_replicates: 1 },
+            only_in_text: OnlyInText {
+                has_all_samples: true,
+                merged_parts: None,
+                requested_replicates: 1,
+                is_contradicted: false,
+            },
         }
     }
 }

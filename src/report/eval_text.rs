@@ -36,6 +36,8 @@ impl fmt::Display for EvalReport {
         let how = pace(self.samples as f64, self.elapsed_seconds, self.only_in_text.merged_parts);
         let (study, samples) = (&self.study, count(self.samples));
         writeln!(f, "{study}: {samples} samples of the {} {how}, seed {}\n", self.source, self.seed)?;
+        let first = usize::from(self.only_in_text.is_contradicted);
+        self.warnings[..first].iter().try_for_each(|warning| writeln!(f, "warning: {warning}\n"))?;
         self.write_circumstances(f)?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         writeln!(f, "  stable                 {}   judged by {}", percent(self.stable_proportion), self.judged_by)?;
@@ -84,7 +86,7 @@ impl fmt::Display for EvalReport {
         if let Some(critical) = &self.critical {
             write!(f, "{critical}")?;
         }
-        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
+        self.warnings[first..].iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
     }
 }
 

@@ -153,11 +153,15 @@ impl<'a> ModelSample<'a> {
         let plan = Plan::new(surrogate);
         let mut comparison = Comparison::new(self.len() as u64);
         let matching = Matching::new(surrogate, self.study.spectrum.target);
+        let names: Vec<String> =
+            self.modes.iter().flat_map(|mode| ["re", "im"].map(|p| format!("{p}_{mode}"))).collect();
         self.for_each_block(surrogate, &plan, self.len(), |start, block| {
             let range = start..start + block.max_re.len();
             comparison.classify(self.max_re[range.clone()].iter().copied(), &block);
             let spectra: Vec<Spectrum> = range.filter_map(|index| self.spectrum(index)).collect();
-            comparison.merge(errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block));
+            let mut errors = errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block);
+            errors.retain(|error| names.contains(&error.name));
+            comparison.merge(errors);
         })?;
         Ok(comparison)
     }

@@ -81,7 +81,19 @@ impl DiscordantCounts {
             level,
         }
     }
+
+    /// By how much the proportion may differ from that of the surrogate, at `level`: lower and upper end, as shares. A
+    /// surrogate is contradicted if zero lies outside.
+    pub fn difference(self, level: f64) -> [f64; 2] {
+        // In the middle between 0 and 1 nothing is cut off, and with so many samples it is known.
+        let middle = Proportion { hits: KNOWN / 2, samples: KNOWN };
+        let Interval { lower, upper, .. } = self.bound(middle, level);
+        [lower - 0.5, upper - 0.5]
+    }
 }
+
+/// Samples from which a proportion is known for all purposes.
+const KNOWN: u64 = 1 << 50;
 
 #[cfg(test)]
 mod tests {
