@@ -127,3 +127,58 @@ fn the_paper_s_target_refuses_a_changing_number_of_modes_and_names_the_other() {
     let message = refusal(folder.path(), &["build", "bike.toml"]);
     assert!(message.contains("modes oscillate at") && message.contains("\"invariants\""), "{message}");
 }
+
+#[test]
+fn inputs_named_like_columns_of_results_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["max_re", "stable", "verdict", "re_1", "im_2", "re_1_b", "real_1"] {
+        let study = text("tests/data/field/cap.toml")
+            .replace("50 - p", &format!("50 - {name}"))
+            .replace("p = {", &format!("{name} = {{"));
+        fs::write(folder.path().join("named.toml"), study).unwrap();
+        let message = refusal(folder.path(), &["build", "named.toml"]);
+        assert!(message.contains(&format!("results have a column {name}")), "{message}");
+    }
+}
+
+/// In every seed the mode that no run may have seen flutter does so in a thousandth of the box.
+#[test]
+fn a_rare_flutter_is_never_reported_as_none() {
+    let study = Study::from_toml(&text("surrogates/clutch-r4.toml").replace("upper = 0.5", "upper = 0.0723")).unwrap();
+    for seed in 1..=4 {
+        let surrogate = build(&Study { seed, ..study.clone() }, &Silent).unwrap();
+        let summary = pcc_evaluate::evaluation::monte_carlo(&surrogate, 400_000, 1, &Silent).unwrap();
+        let share = summary.unstable() as f64 / 400_000.0;
+        assert!((8.5e-4..1.1e-3).contains(&share) && summary.divergent == 0, "seed {seed}: {share}");
+    }
+}
+
+#[test]
+fn lists_that_split_a_group_are_answered_with_the_smallest_that_works() {
+    let folder = tempfile::tempdir().unwrap();
+    let blades = text("tests/data/field/blades.toml");
+    fs::write(folder.path().join("blades.toml"), blades + "\n[spectrum]\nmodes = [2]\n").unwrap();
+    let message = refusal(folder.path(), &["build", "blades.toml"]);
+    assert!(message.contains("modes = [1, 2, 3]") || message.contains("list both or neither"), "{message}");
+}
+
+/// A certificate that excludes the share is said before it.
+#[test]
+fn a_certificate_that_contradicts_the_surrogate_is_said_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::copy(repository("tests/data/field/cap.toml"), path.join("cap.toml")).unwrap();
+    output(path, &["build", "cap.toml", "-o", "cap.json", "--format", "json"]);
+    // A surrogate that says that nothing diverges: its slow eigenvalue is moved away.
+    let mut surrogate = pcc_evaluate::artifact::read(&path.join("cap.json")).unwrap().surrogate;
+    let slow = surrogate.components().into_iter().find(|component| component.name == "real_1").unwrap().id;
+    surrogate.expansions[slow].coefficients[0] -= 10.0;
+    surrogate.self_test = surrogate.make_self_test(surrogate.self_test.points.clone());
+    let bytes = pcc_evaluate::artifact::encode(&surrogate, pcc_evaluate::artifact::Format::Binary).unwrap();
+    fs::write(path.join("wrong.pcc"), bytes).unwrap();
+    let said = output(path, &["certify", "wrong.pcc", "--study", "cap.toml", "--runs", "200", "-o", "wrong.pcc"]);
+    assert!(said.contains("contradict the surrogate"), "{said}");
+    let said = output(path, &["eval", "wrong.pcc", "-n", "1000"]);
+    let (warning, headline) = (said.find("a certificate contradicts").unwrap(), said.find("  stable ").unwrap());
+    assert!(warning < headline, "{said}");
+}
