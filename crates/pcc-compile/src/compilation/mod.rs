@@ -133,7 +133,7 @@ enum Fitting<'a> {
     /// Modes have frequency ranks.
     Ranked(RankedModes<'a>),
     /// Eigenvalues are followed, and grouped by prediction.
-    Grouped(GroupedEigenvalues<'a>),
+    Grouped(Box<GroupedEigenvalues<'a>>),
 }
 
 impl<'a> Fitting<'a> {
@@ -142,7 +142,7 @@ impl<'a> Fitting<'a> {
         let fit = ComponentFit::new(study)?;
         let is_grouped = study.spectrum.target == Target::Invariants && study.fit.method.fits_every_design();
         Ok(match is_grouped {
-            true => Self::Grouped(GroupedEigenvalues::new(study, fit)),
+            true => Self::Grouped(Box::new(GroupedEigenvalues::new(study, fit))),
             false => Self::Ranked(RankedModes::new(fit)),
         })
     }

@@ -29,7 +29,8 @@ impl Key {
 
 /// The numbers of every output, given its eigenvalues in the middle of the inputs in the order of its labels.
 pub(super) fn numbers(outputs: &[(&Output, Vec<Complex<f64>>)]) -> Vec<Numbers> {
-    let (mut modes, mut reals): (Vec<(usize, Key)>, Vec<(usize, f64)>) = (Vec::new(), Vec::new());
+    let mut modes: Vec<(usize, Key)> = Vec::new();
+    let mut reals: Vec<(usize, f64)> = Vec::new();
     for (at, (output, lambdas)) in outputs.iter().enumerate() {
         let labelled: Vec<(Label, Complex<f64>)> = output.labels().zip(lambdas.iter().copied()).collect();
         for &(label, lambda) in &labelled {
