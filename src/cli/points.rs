@@ -227,11 +227,7 @@ impl<R: Read> Read for ShortLines<R> {
 /// Positions of the labels in the order of columns: mode by mode, then the real eigenvalues.
 fn in_order(labels: &[Label]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..labels.len()).collect();
-    order.sort_by_key(|&at| match labels[at] {
-        Label::Mode(mode) => (mode, 0),
-        Label::Second(mode) => (mode, 1),
-        Label::Real(number) => (usize::MAX, number),
-    });
+    order.sort_by_key(|&at| labels[at].column());
     order
 }
 

@@ -57,10 +57,8 @@ fn surrogates_of_systems_from_the_field_agree_with_their_models_and_with_numpy()
         let comparison = sample.compare(&surrogate).unwrap();
         let runs = surrogate.training.counts.direct_computations;
         assert!(runs <= most_runs, "{name}: {runs} runs");
-        // One point more: a bar of less than that cannot be told from it on so few.
         let misclassified = comparison.misclassified_percent();
-        let allowed = most_misclassified + 100.0 / POINTS as f64;
-        assert!(misclassified <= allowed, "{name}: {misclassified} %");
+        assert!(misclassified <= most_misclassified, "{name}: {misclassified} %");
 
         let block = sample.surrogate_at(&surrogate, POINTS as usize).unwrap();
         let tops = block.max_re.iter().zip(&block.top_frequency);
@@ -69,7 +67,7 @@ fn surrogates_of_systems_from_the_field_agree_with_their_models_and_with_numpy()
         for (kind, expected) in kinds.into_iter().zip(truth(name)) {
             let share = verdicts.iter().filter(|verdict| **verdict == kind).count() as f64 / POINTS as f64;
             // Four standard errors of a share, and what is misclassified.
-            let tolerance = 4.0 * (expected * (1.0 - expected) / POINTS as f64).sqrt() + 0.01 * allowed;
+            let tolerance = 4.0 * (expected * (1.0 - expected) / POINTS as f64).sqrt() + 0.01 * most_misclassified;
             assert!((share - expected).abs() <= tolerance, "{name}: {kind:?} {share}, not {expected}");
         }
     }
@@ -117,6 +115,46 @@ fn a_window_of_stability_has_two_crossings() {
             assert!((cell - expected).abs() < 1e-3, "{command}: {row}");
         }
     }
+}
+
+/// At p = 50 the slow eigenvalue is zero: it is no rigid-body motion for that, in the middle of the inputs least of
+/// all.
+#[test]
+fn a_slow_eigenvalue_that_passes_zero_in_the_middle_keeps_its_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::copy(repository("tests/data/field/cap.toml"), path.join("cap.toml")).unwrap();
+    fs::write(path.join("points.csv"), "p\n45\n50\n55\n").unwrap();
+    output(path, &["build", "cap.toml"]);
+    for (command, name) in [("eval", "cap.pcc"), ("reference", "cap.toml")] {
+        output(path, &[command, name, "--points", "points.csv", "--out", "out.csv"]);
+        let out = fs::read_to_string(path.join("out.csv")).unwrap();
+        let mut lines = out.lines();
+        let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+        let at = |name: &str| header.iter().position(|column| *column == name).unwrap();
+        for (line, p) in lines.zip([45.0f64, 50.0, 55.0]) {
+            let cells: Vec<&str> = line.split(',').collect();
+            let number = |name: &str| cells[at(name)].parse::<f64>().unwrap();
+            // λ² + 30 λ + 50 − p = 0
+            let root = (225.0 - (50.0 - p)).sqrt();
+            assert!((number("real_1") - (root - 15.0)).abs() < 1e-6, "{command}: {line}");
+            assert!((number("real_2") - (-root - 15.0)).abs() < 1e-6, "{command}: {line}");
+            assert!((number("im_1") - 9.9994999875).abs() < 1e-6, "{command}: {line}");
+        }
+    }
+}
+
+/// What 0.1.0 refused because modes stop oscillating.
+#[test]
+fn a_clutch_whose_modes_stop_oscillating_is_built() {
+    let text = text("surrogates/clutch-r2.toml")
+        .replace("mu      = {", "c_f = {")
+        .replace("upper = 0.5", "upper = 4e3")
+        .replace("[inputs]", "[model.constants]\nk_f = 2e4\n[inputs]");
+    let study = Study::from_toml(&text).unwrap();
+    let surrogate = build(&study, &Silent).unwrap();
+    let comparison = ModelSample::new(&study, POINTS, 7, &Silent).unwrap().compare(&surrogate).unwrap();
+    assert!(comparison.misclassified_percent() <= 0.01, "{}", comparison.misclassified_percent());
 }
 
 #[test]

@@ -91,6 +91,19 @@ pub struct Run {
     pub reductions: Option<Reductions>,
 }
 
+/// Takes as many eigenvalues for rigid-body motion as are negligible in every run, at most `known` from earlier ones: a
+/// slow eigenvalue is negligible only where it passes zero. Returns their number.
+pub fn agree_on_rigid_body_motion(runs: &mut [Run], known: usize) -> usize {
+    let count = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0).min(known);
+    for run in runs.iter_mut().filter(|run| run.spectrum.rigid_body_modes() != count) {
+        // Fewer are dropped than before, so some remain.
+        if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(count) {
+            run.spectrum = spectrum;
+        }
+    }
+    count
+}
+
 /// Runs the model of a study. Unless it is told otherwise, modes have frequency ranks, and it sees to it that all
 /// points have the same number of them.
 pub struct Runner<'a> {

@@ -64,7 +64,7 @@ const ROUNDING_MARGIN: f64 = 1.001;
 const SIGNIFICANT: f64 = 4.0;
 
 /// The points are the same for all surrogates of a dimension and seed: numbers of a design's stream that no level has.
-pub(super) const FIRST_INDEX: u64 = 1 << 40;
+const FIRST_INDEX: u64 = 1 << 40;
 
 /// What the judgement of one level leaves for the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -223,6 +223,27 @@ fn effective_count(weights: &[f64]) -> f64 {
     weights.iter().sum::<f64>().powi(2) / weights.iter().map(|weight| weight * weight).sum::<f64>()
 }
 
+/// A surrogate at the points at which proportions are compared, the same for all of a dimension and seed.
+pub(super) fn at_judged_points(surrogate: &Surrogate, observer: &dyn Observer) -> Result<Block, Interrupted> {
+    let (inputs, seed) = (&surrogate.inputs, surrogate.training.seed);
+    let plan = Plan::new(surrogate);
+    const PART: usize = 4096;
+    let parts = try_map(POINTS.div_ceil(PART), |part| {
+        observer.check()?;
+        let range = part * PART..POINTS.min((part + 1) * PART);
+        let mut points = vec![vec![0.0; inputs.dimension()]; range.len()];
+        for (point, i) in points.iter_mut().zip(range) {
+            random_point(inputs, seed, Purpose::Design, FIRST_INDEX + i as u64, point);
+        }
+        Ok(evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>()))
+    })?;
+    let mut block = Block::with_capacity(surrogate.component_count(), surrogate.labels().len(), POINTS);
+    for part in parts {
+        block.append(part);
+    }
+    Ok(block)
+}
+
 /// The surrogate at many random points.
 struct Judge<'a> {
     surrogate: &'a Surrogate,
@@ -235,22 +256,7 @@ struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     fn new(surrogate: &'a Surrogate, runs: &[Run], observer: &'a dyn Observer) -> Result<Self, Interrupted> {
-        let (inputs, seed) = (&surrogate.inputs, surrogate.training.seed);
-        let plan = Plan::new(surrogate);
-        const PART: usize = 4096;
-        let parts = try_map(POINTS.div_ceil(PART), |part| {
-            observer.check()?;
-            let range = part * PART..POINTS.min((part + 1) * PART);
-            let mut points = vec![vec![0.0; inputs.dimension()]; range.len()];
-            for (point, i) in points.iter_mut().zip(range) {
-                random_point(inputs, seed, Purpose::Design, FIRST_INDEX + i as u64, point);
-            }
-            Ok(evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>()))
-        })?;
-        let mut block = Block::with_capacity(surrogate.component_count(), surrogate.labels().len(), POINTS);
-        for part in parts {
-            block.append(part);
-        }
+        let block = at_judged_points(surrogate, observer)?;
         let mut near: Vec<usize> = (0..POINTS).collect();
         near.select_nth_unstable_by(TRIED_POINTS, |&a, &b| {
             block.max_re[a].abs().total_cmp(&block.max_re[b].abs()).then(a.cmp(&b))

@@ -2,7 +2,7 @@
 
 use super::BuildError;
 use super::group_fits::{gradients, resolutions};
-use crate::campaign::{Campaign, Failure, Run, RunError, Runner};
+use crate::campaign::{Campaign, Failure, Run, RunError, Runner, agree_on_rigid_body_motion};
 use crate::fitting::design::{NestedLatinHypercube, Samples};
 use crate::fitting::regression::{Gradients, Response};
 use crate::mechanics::model::Model;
@@ -35,12 +35,21 @@ pub(super) struct Level {
 impl Level {
     /// What each component is fitted to.
     pub fn responses(&self) -> Vec<Response<'_>> {
-        let response = |id: usize| {
-            let gradients = self.gradients.as_ref().map(|all| &all[id]).filter(|one| !one.points.is_empty());
-            Response { gradients, ..Response::of(&self.values[id], self.resolutions[id]) }
-        };
-        (0..self.values.len()).map(response).collect()
+        responses(&self.values, self.gradients.as_deref(), &self.resolutions)
     }
+}
+
+/// What components with these values, derivatives and resolutions are fitted to.
+pub(super) fn responses<'v>(
+    values: &'v [Vec<f64>],
+    gradients: Option<&'v [Gradients]>,
+    resolutions: &[f64],
+) -> Vec<Response<'v>> {
+    let response = |id: usize| {
+        let gradients = gradients.map(|all| &all[id]).filter(|one| !one.points.is_empty());
+        Response { gradients, ..Response::of(&values[id], resolutions[id]) }
+    };
+    (0..values.len()).map(response).collect()
 }
 
 /// The modes and real eigenvalues of each output.
@@ -121,12 +130,7 @@ impl<'a> Evaluations<'a> {
     ///
     /// [`RunError::EigenvalueCount`] if runs have different numbers of eigenvalues.
     pub fn follow(&mut self) -> Result<(Labels, Groups), BuildError> {
-        let rigid = self.runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
-        for run in &mut self.runs {
-            if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(rigid) {
-                run.spectrum = spectrum;
-            }
-        }
+        agree_on_rigid_body_motion(&mut self.runs, usize::MAX);
         let samples = self.samples();
         let describe = |i: usize| self.study.inputs.describe(&self.study.inputs.physical(samples.point(i)));
         let count = |run: &Run| run.spectrum.eigenvalues().len();

@@ -4,23 +4,20 @@
 //! taught of it.
 
 use super::components::{Care, ComponentFit, ComponentResult};
+use super::evaluations::responses;
 use crate::campaign::Run;
 use crate::fitting::design::Samples;
 use crate::fitting::fit::method::Previous;
 use crate::fitting::regression::{BasisTables, Gradients, Response};
-use crate::mechanics::spectrum::{Group, Groups, Labels, Numbers, components_of, output};
-use crate::numerics::assignment::assignment;
+use crate::mechanics::spectrum::{Group, Groups, Labels, Numbers, components_of, nearest, output};
 use crate::study::Study;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 use pcc_evaluate::components::{Output, OutputKind};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use std::collections::HashMap;
 
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
 const SOLVER_ACCURACY: f64 = 1e-13;
-
-/// Stands for a distance that is no number.
-const FAR: f64 = 1e300;
 
 /// What was found on a design, and how its eigenvalues are followed.
 pub(super) struct Followed<'d> {
@@ -206,11 +203,7 @@ pub(super) fn gradients(
 impl GroupFit {
     /// What each component is fitted to.
     fn responses(&self) -> Vec<Response<'_>> {
-        let response = |id: usize| {
-            let gradients = self.gradients.as_ref().map(|all| &all[id]).filter(|one| !one.points.is_empty());
-            Response { gradients, ..Response::of(&self.values[id], self.resolutions[id]) }
-        };
-        (0..self.values.len()).map(response).collect()
+        responses(&self.values, self.gradients.as_deref(), &self.resolutions)
     }
 
     /// The eigenvalues that the fit without run i predicts there, in the order of recombination; `None` if it is not
@@ -237,13 +230,9 @@ fn score(fit: &GroupFit, group: &Group, followed: &Followed<'_>) -> f64 {
             return f64::INFINITY;
         };
         let lambdas: Vec<Complex<f64>> = labels.iter().map(|&label| followed.eigenvalue(run, label)).collect();
-        let distances = DMatrix::from_fn(labels.len(), labels.len(), |k, j| {
-            let distance = (lambdas[k] - predicted[j]).norm();
-            if distance.is_finite() { distance } else { FAR }
-        });
-        for (k, &j) in assignment(&distances).iter().enumerate() {
+        for (k, j) in nearest(&lambdas, &predicted).into_iter().enumerate() {
             let error = predicted[j].re - lambdas[k].re;
-            squares[k] += if error.is_finite() { error * error } else { FAR };
+            squares[k] += if error.is_finite() { error * error } else { f64::INFINITY };
         }
     }
     let relative = |(k, &label): (usize, &usize)| {

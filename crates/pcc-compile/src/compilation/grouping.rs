@@ -18,7 +18,7 @@
 
 use super::components::Care;
 use super::group_fits::{Followed, GroupFits};
-use crate::mechanics::spectrum::Group;
+use crate::mechanics::spectrum::{CLOSE, Group};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 
 /// Scores that differ by less than this factor are equal, and merging must lower a score by more.
@@ -31,14 +31,10 @@ const NEGLIGIBLE: f64 = 1e-4;
 /// Swap ratios above which labels are united in some candidate.
 const SWAPS: [f64; 3] = [0.5, 0.05, 0.005];
 
-/// Frequencies that come closer than this share of the largest distance between the eigenvalues belong together in one
-/// of the candidates. The coalescing pair of the clutch reaches 10⁻³, its next neighbours stay above 0.8.
-const CLOSE: f64 = 0.2;
-
 /// A mode whose frequency falls below this share of its largest |λ| is tried together with its conjugate.
 const NEAR_AXIS: f64 = 0.2;
 
-/// Eigenvalues in a group that merging makes, at most; candidates may have larger ones.
+/// Eigenvalues in a group that merging makes, at most: errors of more are amplified 10⁶ times in the roots.
 const MOST_MERGED: usize = 6;
 
 /// Eigenvalues in a group of a candidate, at most.
@@ -87,10 +83,7 @@ pub(super) fn choose(
     let as_good: Vec<&(Grouping, f64)> =
         found.iter().filter(|(_, score)| score.max(NEGLIGIBLE) <= WORTH * best || best == f64::INFINITY).collect();
     let is_former = |(grouping, _): &&&(Grouping, f64)| former.is_some_and(|(former, _)| grouping == former);
-    let finer = |a: &(Grouping, f64), b: &(Grouping, f64)| {
-        // Pairs are two eigenvalues whether closed or not: what counts is how few components depend on each other.
-        b.0.len().cmp(&a.0.len()).then(a.1.total_cmp(&b.1))
-    };
+    let finer = |a: &(Grouping, f64), b: &(Grouping, f64)| b.0.len().cmp(&a.0.len()).then(a.1.total_cmp(&b.1));
     let chosen = as_good.iter().find(is_former).copied().or_else(|| as_good.into_iter().min_by(|a, b| finer(a, b)));
     Ok(chosen.cloned().unwrap_or((finest, f64::INFINITY)))
 }
@@ -175,11 +168,7 @@ impl Choice<'_, '_, '_> {
             Some((groups.closed(group), None)).filter(|_| !group.is_closed() && nears_the_axis(self.followed, group));
         let with_neighbours =
             others.into_iter().take(TRIED_NEIGHBOURS).map(|other| (groups.union(group, &grouping[other]), Some(other)));
-        with_conjugates
-            .into_iter()
-            .chain(with_neighbours)
-            .filter(|(group, _)| group.size() <= MOST_MERGED && group.is_possible())
-            .collect()
+        with_conjugates.into_iter().chain(with_neighbours).filter(|(group, _)| group.size() <= MOST_MERGED).collect()
     }
 }
 
@@ -212,8 +201,7 @@ fn candidates(followed: &Followed<'_>, finest: &Grouping) -> Vec<Grouping> {
     candidates.push(united(followed, finest, &labels, |a, b| is_close(followed, a, b)));
     let (complex, closed): (Vec<&Group>, Vec<&Group>) = finest.iter().partition(|group| !group.is_closed());
     let all = |groups: &[&Group]| {
-        let (first, rest) = groups.split_first()?;
-        Some(rest.iter().fold((*first).clone(), |whole, group| followed.groups.union(&whole, group)))
+        groups.iter().map(|group| (*group).clone()).reduce(|whole, group| followed.groups.union(&whole, &group))
     };
     candidates.push(sorted(all(&complex).into_iter().chain(all(&closed)).collect()));
     if finest.iter().any(|group| group.is_closed() || nears_the_axis(followed, group)) {
@@ -250,19 +238,14 @@ fn united(
     for (k, &a) in labels.iter().enumerate() {
         for &b in labels[..k].iter().filter(|&&b| belong(a, b)) {
             let holds = |group: &Group, label: usize| groups.closed(group).labels().contains(&label);
-            let (of_a, mut rest): (Vec<Group>, Vec<Group>) = grouping.into_iter().partition(|group| holds(group, a));
-            let (of_b, apart): (Vec<Group>, Vec<Group>) = rest.drain(..).partition(|group| holds(group, b));
-            let mut parts = of_a.into_iter().chain(of_b);
-            let Some(first) = parts.next() else {
-                grouping = apart;
-                continue;
-            };
-            let mut whole = parts.fold(first, |whole, part| groups.union(&whole, &part));
+            let (parts, apart): (Vec<Group>, Vec<Group>) =
+                grouping.into_iter().partition(|group| holds(group, a) || holds(group, b));
+            grouping = apart;
+            let Some(mut whole) = parts.into_iter().reduce(|whole, part| groups.union(&whole, &part)) else { continue };
             // Vectors of modes that coalesce with each other are close to those of their conjugates, too.
             if groups.is_upper_half(a) != groups.is_upper_half(b) && nears_the_axis(followed, &whole) {
                 whole = groups.closed(&whole);
             }
-            grouping = apart;
             grouping.push(whole);
         }
     }

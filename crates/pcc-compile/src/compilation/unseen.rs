@@ -7,20 +7,12 @@
 //! a group; unless their eigenvectors follow them through.
 
 use super::components::Care;
+use super::decision::at_judged_points;
 use super::group_fits::{Followed, GroupFit, GroupFits};
 use super::grouping::Grouping;
-use crate::mechanics::spectrum::Group;
+use crate::mechanics::spectrum::{CLOSE, Group};
 use crate::study::Study;
-use pcc_evaluate::evaluation::{Plan, evaluate_points};
-use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
-use pcc_evaluate::probability::inputs::random_point;
-use pcc_evaluate::probability::random::Purpose;
-
-/// Points at which predicted distances are looked at.
-const POINTS: usize = 50_000;
-
-/// Distances below this share of the largest on the design are close.
-const CLOSE: f64 = 0.2;
+use pcc_evaluate::foundation::{Interrupted, Observer};
 
 /// Pairs whose d nowhere falls below this share of its largest on the design are not on their way to meet.
 const APPROACHING: f64 = 0.5;
@@ -49,10 +41,8 @@ pub(super) fn with_unseen_groups(
         }
         let holds = |group: &Group| group.labels().iter().any(|label| trial.labels().contains(label));
         let (parts, mut kept): (Vec<Group>, Vec<Group>) = grouping.iter().cloned().partition(holds);
-        let mut parts = parts.into_iter();
-        let Some(first) = parts.next() else { continue };
-        let whole = parts.fold(first, |whole, part| followed.groups.union(&whole, &part));
-        if whole.is_possible() {
+        let whole = parts.into_iter().reduce(|whole, part| followed.groups.union(&whole, &part));
+        if let Some(whole) = whole.filter(Group::is_possible) {
             kept.push(whole);
             kept.sort_unstable();
             grouping = kept;
@@ -111,19 +101,6 @@ fn closes(
         .sqrt();
     let near = (0.5 * CLOSE * largest).powi(2).max(RESIDUALS * residual);
     let surrogate = super::record::of_fits(study, &fit.output, &fit.fits);
-    let plan = Plan::new(&surrogate);
-    const PART: usize = 4096;
-    let found = try_map(POINTS.div_ceil(PART), |part| {
-        observer.check()?;
-        let range = part * PART..POINTS.min((part + 1) * PART);
-        let mut points = vec![vec![0.0; study.inputs.dimension()]; range.len()];
-        for (point, i) in points.iter_mut().zip(range) {
-            random_point(&study.inputs, study.seed, Purpose::Design, super::decision::FIRST_INDEX + i as u64, point);
-        }
-        let block = evaluate_points(&surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());
-        Ok::<bool, Interrupted>(
-            block.components[2].iter().zip(&block.components[3]).any(|(re, im)| re.hypot(*im) < near),
-        )
-    })?;
-    Ok(found.contains(&true))
+    let block = at_judged_points(&surrogate, observer)?;
+    Ok(block.components[2].iter().zip(&block.components[3]).any(|(re, im)| re.hypot(*im) < near))
 }

@@ -172,26 +172,39 @@ pub(super) fn errors(
     spectra: &[&Spectrum],
     block: &Block,
 ) -> Vec<ComponentError> {
-    let predicted = |i: usize| -> Vec<Complex<f64>> { block.eigenvalues.iter().map(|list| list[i]).collect() };
-    let found = |(i, spectrum): (usize, &&Spectrum)| Some((i, matching.find(&predicted(i), spectrum)?));
-    let matched: Vec<(usize, Vec<Complex<f64>>)> = spectra.iter().enumerate().filter_map(found).collect();
-    let mut errors = eigenvalue_errors(surrogate, &matched, block);
+    let matched = matched(matching, spectra, block);
+    let mut errors = errors_of_labels(surrogate, &matched, block);
     errors.extend(invariant_errors(surrogate, &matched, block));
     errors
 }
 
+/// The model's eigenvalues by label, with the numbers of the points at which it has enough.
+type Matched = Vec<(usize, Vec<Complex<f64>>)>;
+
+fn matched(matching: &Matching, spectra: &[&Spectrum], block: &Block) -> Matched {
+    let predicted = |i: usize| -> Vec<Complex<f64>> { block.eigenvalues.iter().map(|list| list[i]).collect() };
+    let found = |(i, spectrum): (usize, &&Spectrum)| Some((i, matching.find(&predicted(i), spectrum)?));
+    spectra.iter().enumerate().filter_map(found).collect()
+}
+
+/// Errors of every mode and real eigenvalue alone.
+pub(super) fn eigenvalue_errors(
+    surrogate: &Surrogate,
+    matching: &Matching,
+    spectra: &[&Spectrum],
+    block: &Block,
+) -> Vec<ComponentError> {
+    errors_of_labels(surrogate, &matched(matching, spectra, block), block)
+}
+
 /// Re λ and Im λ of every mode, then the real eigenvalues.
-fn eigenvalue_errors(
+fn errors_of_labels(
     surrogate: &Surrogate,
     matched: &[(usize, Vec<Complex<f64>>)],
     block: &Block,
 ) -> Vec<ComponentError> {
     let mut labels: Vec<(usize, Label)> = surrogate.labels().into_iter().enumerate().collect();
-    labels.sort_by_key(|&(_, label)| match label {
-        Label::Mode(mode) => (mode, 0),
-        Label::Second(mode) => (mode, 1),
-        Label::Real(number) => (usize::MAX, number),
-    });
+    labels.sort_by_key(|(_, label)| label.column());
     let of_label = |(position, label): (usize, Label)| {
         let error = |name: String, part: Part| ComponentError {
             name,

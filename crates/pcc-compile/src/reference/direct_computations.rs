@@ -1,6 +1,6 @@
 //! Monte Carlo on the initial model.
 
-use crate::campaign::{Campaign, Run, RunError, Runner};
+use crate::campaign::{Campaign, Run, RunError, Runner, agree_on_rigid_body_motion};
 use crate::mechanics::model::ModelError;
 use crate::mechanics::spectrum::{Spectrum, Target};
 use crate::study::Study;
@@ -97,14 +97,7 @@ pub(super) fn for_each_chunk(
             .collect();
         let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
         let mut runs = runner.run(&physical, observer)?;
-        // Rigid-body motion is negligible everywhere; a slow eigenvalue only where it passes zero.
-        let of_chunk = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
-        rigid_body_modes = of_chunk.min(rigid_body_modes);
-        for run in &mut runs {
-            if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(rigid_body_modes) {
-                run.spectrum = spectrum;
-            }
-        }
+        rigid_body_modes = agree_on_rigid_body_motion(&mut runs, rigid_body_modes);
         consume(&standardized, &runs)?;
     }
     observer.finish();

@@ -1,13 +1,9 @@
 //! Which eigenvalue of the model is which of a surrogate's, at one point.
 
-use crate::mechanics::spectrum::{Spectrum, Target};
-use crate::numerics::assignment::assignment;
-use nalgebra::{Complex, DMatrix};
+use crate::mechanics::spectrum::{Spectrum, Target, nearest};
+use nalgebra::Complex;
 use pcc_evaluate::components::{Label, OutputKind};
 use pcc_evaluate::surrogate::Surrogate;
-
-/// Stands for a distance that is no number.
-const FAR: f64 = 1e300;
 
 /// What of a surrogate says how its eigenvalues are found among those of the model.
 pub(super) struct Matching {
@@ -34,11 +30,7 @@ impl Matching {
         if among.len() < predicted.len() {
             return None;
         }
-        let distances = DMatrix::from_fn(predicted.len(), among.len(), |i, j| {
-            let distance = (predicted[i] - among[j]).norm();
-            if distance.is_finite() { distance } else { FAR }
-        });
-        Some(assignment(&distances).into_iter().map(|j| among[j]).collect())
+        Some(nearest(predicted, among).into_iter().map(|j| among[j]).collect())
     }
 }
 

@@ -5,7 +5,7 @@
 //! there by eigenvectors, or, if the model has none, by their order in |λ|.
 
 use super::direct_computations::ReferenceError;
-use crate::campaign::{Campaign, Run, Runner};
+use crate::campaign::{Campaign, Run, RunError, Runner, agree_on_rigid_body_motion};
 use crate::mechanics::spectrum::{Labels, Modes, Spectrum, SpectrumError, Target};
 use crate::study::Study;
 use nalgebra::Complex;
@@ -69,23 +69,26 @@ impl<'a> PointReference<'a> {
             let answer = |run: Run| PointAnswer { top: run.spectrum.top(), eigenvalues: run.eigenvalues };
             return Ok(runs.into_iter().map(answer).collect());
         }
+        let mut runs = self.runner.run(points, observer)?;
         if self.center.is_none() {
-            self.begin(observer)?;
+            self.begin(&mut runs, observer)?;
         }
-        let runs = self.runner.run(points, observer)?;
         let Some(center) = &self.center else { return Ok(Vec::new()) };
+        agree_on_rigid_body_motion(&mut runs, center.run.spectrum.rigid_body_modes());
         let answers = runs
             .iter()
             .map(|run| PointAnswer { eigenvalues: center.follow(&self.labels, run), top: run.spectrum.top() });
         Ok(answers.collect())
     }
 
-    /// Runs the middle of the inputs and gives numbers.
-    fn begin(&mut self, observer: &dyn Observer) -> Result<(), ReferenceError> {
+    /// Runs the middle of the inputs and gives numbers. Rigid-body motion is what it has in common with the first runs:
+    /// a slow eigenvalue may pass zero just there.
+    fn begin(&mut self, first: &mut [Run], observer: &dyn Observer) -> Result<(), ReferenceError> {
         let middle = self.study.inputs.physical(&vec![0.0; self.study.inputs.dimension()]);
-        let Some(run) = self.runner.run(std::slice::from_ref(&middle), observer)?.into_iter().next() else {
-            return Ok(());
-        };
+        let mut center = self.runner.run(std::slice::from_ref(&middle), observer)?;
+        let common = agree_on_rigid_body_motion(first, usize::MAX);
+        agree_on_rigid_body_motion(&mut center, common);
+        let Some(run) = center.into_iter().next() else { return Ok(()) };
         let spectrum = &run.spectrum;
         let lambdas = spectrum.eigenvalues();
         let oscillating: Vec<usize> = (0..lambdas.len()).filter(|&at| lambdas[at].im > 0.0).collect();
@@ -101,7 +104,7 @@ impl<'a> PointReference<'a> {
         {
             let cause = SpectrumError::NoSuchMode { mode, count: oscillating.len() };
             let point = self.study.inputs.describe(&middle);
-            return Err(crate::campaign::RunError::Spectrum { point, cause }.into());
+            return Err(RunError::Spectrum { point, cause }.into());
         }
         let has_reals = !reals.is_empty();
         for (mode, at) in (1..).zip(oscillating).filter(|(mode, _)| listed(*mode)) {

@@ -1,6 +1,6 @@
 //! Direct computations that are kept, so that many surrogates can be judged on the same points for the price of one.
 
-use super::compare::{Comparison, errors};
+use super::compare::{Comparison, eigenvalue_errors};
 use super::direct_computations::{Ranks, ReferenceError, for_each_chunk, surrogate_block};
 use super::matching::Matching;
 use crate::campaign::Campaign;
@@ -158,8 +158,12 @@ impl<'a> ModelSample<'a> {
         self.for_each_block(surrogate, &plan, self.len(), |start, block| {
             let range = start..start + block.max_re.len();
             comparison.classify(self.max_re[range.clone()].iter().copied(), &block);
+            // Where modes have no ranks, none are those of the study.
+            if names.is_empty() {
+                return;
+            }
             let spectra: Vec<Spectrum> = range.filter_map(|index| self.spectrum(index)).collect();
-            let mut errors = errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block);
+            let mut errors = eigenvalue_errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block);
             errors.retain(|error| names.contains(&error.name));
             comparison.merge(errors);
         })?;

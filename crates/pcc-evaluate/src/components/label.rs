@@ -98,6 +98,15 @@ impl Label {
         }
     }
 
+    /// Where its column stands: mode by mode, then the real eigenvalues.
+    pub fn column(self) -> (usize, usize) {
+        match self {
+            Self::Mode(mode) => (mode, 0),
+            Self::Second(mode) => (mode, 1),
+            Self::Real(number) => (usize::MAX, number),
+        }
+    }
+
     /// The number of the mode, if it is that of a mode's first eigenvalue.
     pub fn mode(self) -> Option<usize> {
         match self {

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 /// Neighbours whose frequencies come closer than this share of the largest distance |λ_{k+1} − λ_k| on the design
 /// belong together. The coalescing pair of the clutch reaches 10⁻³, its next neighbours stay above 0.8.
-const CLOSE: f64 = 0.2;
+pub const CLOSE: f64 = 0.2;
 
 /// A mode whose frequency falls below this share of its largest on the design cannot be told from its conjugate.
 const NEAR_REAL_AXIS: f64 = 0.05;

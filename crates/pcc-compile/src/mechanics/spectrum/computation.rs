@@ -2,7 +2,7 @@
 
 use super::derivatives::ReducedSystem;
 use super::labels::Vectors;
-use super::modes::Spectrum;
+use super::modes::{Spectrum, without_smallest};
 use crate::numerics::eigenvalues::SchurForm;
 use nalgebra::{Complex, DMatrix};
 use pcc_evaluate::components::OutputKind;
@@ -43,15 +43,9 @@ impl Reductions {
         let mut systems: Vec<ReducedSystem> = reduce(&of_interest).into_iter().collect();
         let is_all = 2 * of_interest.len() == spectrum.eigenvalues().len();
         if systems.is_empty() || (!is_all && spectrum.eigenvalues().len() <= MOST_FOLLOWED) {
-            // The numbers of the solver, where the spectrum has made real what is nearly so.
-            let rigid = spectrum.rigid_body_modes();
-            let mut by_size: Vec<usize> = (0..found.len()).collect();
-            by_size.sort_by(|&a, &b| found[a].norm().total_cmp(&found[b].norm()).then(a.cmp(&b)));
-            let mut kept: Vec<usize> = by_size.into_iter().skip(rigid).collect();
-            // In the order of the Schur form, so that little of it has to change places.
-            kept.sort_unstable();
-            let all: Vec<Complex<f64>> = kept.into_iter().map(|at| found[at]).collect();
-            systems.extend(reduce(&all));
+            // The numbers of the solver, where the spectrum has made real what is nearly so; in the order of the Schur
+            // form, so that little of it has to change places.
+            systems.extend(reduce(&without_smallest(&found, spectrum.rigid_body_modes())));
         }
         Self { modes, systems }
     }

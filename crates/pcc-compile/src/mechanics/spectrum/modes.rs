@@ -77,11 +77,7 @@ impl Spectrum {
 
     fn without_rigid_body(all: Vec<Complex<f64>>, rigid_body_modes: usize) -> Result<Self, SpectrumError> {
         let largest = all.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max);
-        let mut by_size: Vec<usize> = (0..all.len()).collect();
-        by_size.sort_by(|&a, &b| all[a].norm().total_cmp(&all[b].norm()).then(a.cmp(&b)));
-        let mut kept = by_size.split_off(rigid_body_modes.min(all.len()));
-        kept.sort_unstable();
-        let kept: Vec<Complex<f64>> = kept.into_iter().map(|at| all[at]).collect();
+        let kept = without_smallest(&all, rigid_body_modes);
         let larger = |a: Complex<f64>, b: Complex<f64>| if b.re > a.re { b } else { a };
         let top = kept.iter().copied().reduce(larger).ok_or(SpectrumError::OnlyRigid)?;
         let is_real = |lambda: &Complex<f64>| lambda.im.abs() <= REAL * lambda.norm();
@@ -186,6 +182,15 @@ impl Spectrum {
     pub fn top(&self) -> Complex<f64> {
         self.top
     }
+}
+
+/// All eigenvalues but so many with the smallest |λ|, in their order.
+pub(super) fn without_smallest(all: &[Complex<f64>], count: usize) -> Vec<Complex<f64>> {
+    let mut by_size: Vec<usize> = (0..all.len()).collect();
+    by_size.sort_by(|&a, &b| all[a].norm().total_cmp(&all[b].norm()).then(a.cmp(&b)));
+    let mut kept = by_size.split_off(count.min(all.len()));
+    kept.sort_unstable();
+    kept.into_iter().map(|at| all[at]).collect()
 }
 
 #[cfg(test)]

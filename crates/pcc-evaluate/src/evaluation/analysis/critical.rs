@@ -87,19 +87,11 @@ impl CriticalValues {
     /// above the upper bound; `None` if the quantile lies among them.
     pub fn quantile(&self, level: f64) -> Option<f64> {
         let rank = level * self.samples as f64;
-        let mut below = self.unstable_from_start as f64;
+        let below = self.unstable_from_start as f64;
         if self.unstable_from_start > 0 && rank <= below {
             return Some(self.physical(0.0));
         }
-        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
-            let count = count as f64;
-            if rank <= below + count {
-                let share = (bin as f64 + (rank - below) / count) / BINS as f64;
-                return Some(self.physical(share.max(self.shares.minimum()).min(self.shares.maximum())));
-            }
-            below += count;
-        }
-        None
+        quantile_in_bins(&self.counts, rank - below, &self.shares).map(|share| self.physical(share))
     }
 
     /// Mean critical value of the samples that lose stability, in the input's own unit; `None` if there are none.
@@ -122,20 +114,45 @@ impl CriticalValues {
     }
 
     fn physical(&self, share: f64) -> f64 {
-        let (lower, upper) = (self.domain.lower(), self.domain.upper());
-        (lower + share * (upper - lower)).clamp(lower, upper)
+        physical(self.domain, share)
     }
 
     fn add(&mut self, part: &Part) {
         self.never += part.never;
         self.unstable_from_start += part.unstable_from_start;
         for &share in &part.crossings {
-            self.counts[((share * BINS as f64) as usize).min(BINS - 1)] += 1;
+            self.counts[bin_of(share)] += 1;
         }
         self.shares.merge(&Moments::of(&vec![0.0; part.unstable_from_start as usize]));
         self.shares.merge(&Moments::of(&part.crossings));
         self.crossings.add(&part.changes);
     }
+}
+
+/// The value of an input at this share of its domain.
+pub(super) fn physical(domain: Uniform, share: f64) -> f64 {
+    let (lower, upper) = (domain.lower(), domain.upper());
+    (lower + share * (upper - lower)).clamp(lower, upper)
+}
+
+/// The bin of a share of the domain's width.
+pub(super) fn bin_of(share: f64) -> usize {
+    ((share * BINS as f64) as usize).min(BINS - 1)
+}
+
+/// The share of the domain's width that as many values as `rank` do not exceed, interpolated linearly inside its bin;
+/// `None` if there are fewer.
+pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, shares: &Moments) -> Option<f64> {
+    let mut below = 0.0;
+    for (bin, &count) in counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
+        let count = count as f64;
+        if rank <= below + count {
+            let share = (bin as f64 + (rank - below) / count) / BINS as f64;
+            return Some(share.max(shares.minimum()).min(shares.maximum()));
+        }
+        below += count;
+    }
+    None
 }
 
 /// The critical value of input number `input`, from 0, over samples 0 … `samples` − 1 of the others under `seed`, on

@@ -3,7 +3,7 @@
 //! A window of stability has two: of a bicycle that speeds up, the first is where weave, a mode that flutters, dies
 //! down, the second where capsize, a real eigenvalue, begins to grow.
 
-use super::critical::BINS;
+use super::critical::{BINS, bin_of, physical, quantile_in_bins};
 use crate::components::{Label, Verdict};
 use crate::probability::inputs::Uniform;
 use crate::probability::statistics::Moments;
@@ -55,7 +55,7 @@ pub struct Crossing {
     pub mean: f64,
     /// Smallest and largest.
     pub range: [f64; 2],
-    counts: Vec<u64>,
+    values: Values,
     domain: Uniform,
 }
 
@@ -71,7 +71,7 @@ impl Crossings {
                 .or_insert_with(|| Values { counts: vec![0; BINS], shares: Moments::default() });
             let shares: Vec<f64> = same.iter().map(|(_, share)| *share).collect();
             for share in &shares {
-                values.counts[((share * BINS as f64) as usize).min(BINS - 1)] += 1;
+                values.counts[bin_of(*share)] += 1;
             }
             values.shares.merge(&Moments::of(&shares));
         }
@@ -79,7 +79,6 @@ impl Crossings {
 
     /// All of them, in the order of crossings, of equal ones the most frequent first.
     pub(super) fn list(&self, labels: &[Label], domain: Uniform) -> Vec<Crossing> {
-        let physical = |share: f64| domain.lower() + share * (domain.upper() - domain.lower());
         let crossing = |(key, values): (&CrossingKey, &Values)| Crossing {
             order: key.order,
             loses: key.loses,
@@ -90,9 +89,9 @@ impl Crossings {
             },
             verdict: if key.is_real { Verdict::Divergence } else { Verdict::Flutter },
             samples: values.shares.count(),
-            mean: physical(values.shares.mean()),
-            range: [physical(values.shares.minimum()), physical(values.shares.maximum())],
-            counts: values.counts.clone(),
+            mean: physical(domain, values.shares.mean()),
+            range: [values.shares.minimum(), values.shares.maximum()].map(|share| physical(domain, share)),
+            values: values.clone(),
             domain,
         };
         let mut list: Vec<Crossing> = self.found.iter().map(crossing).collect();
@@ -105,17 +104,7 @@ impl Crossing {
     /// The value that a share `level` of these crossings does not exceed, in the input's own unit, to 10⁻⁴ of the
     /// domain's width.
     pub fn quantile(&self, level: f64) -> f64 {
-        let rank = level * self.samples as f64;
-        let mut below = 0.0;
-        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
-            let count = count as f64;
-            if rank <= below + count {
-                let share = (bin as f64 + (rank - below) / count) / BINS as f64;
-                let value = self.domain.lower() + share * (self.domain.upper() - self.domain.lower());
-                return value.max(self.range[0]).min(self.range[1]);
-            }
-            below += count;
-        }
-        self.range[1]
+        let share = quantile_in_bins(&self.values.counts, level * self.samples as f64, &self.values.shares);
+        share.map_or(self.range[1], |share| physical(self.domain, share))
     }
 }
