@@ -5,8 +5,8 @@
 //! any ambiguity. The *score* of a grouping is that of its worst eigenvalue (`group_fits.rs`).
 //!
 //! 1. Candidates: the finest grouping; labels united that nearly change places between neighbouring runs, at three
-//!    thresholds; labels united whose frequencies come close; all that always oscillate in one group and the rest in
-//!    another; everything in one group.
+//!    thresholds; labels united whose frequencies come close; all in one that approach each other, with and without
+//!    regard to whether they oscillate.
 //! 2. From each, the worst group is merged with a neighbour or with its own conjugates, as long as that lowers its
 //!    score by a factor [`WORTH`].
 //! 3. A grouping whose score is negligible ends the search, and so does that of the level before if its score has
@@ -42,6 +42,10 @@ const MOST_IN_CANDIDATE: usize = 8;
 
 /// Neighbours that a group is merged with by way of trial, the closest.
 const TRIED_NEIGHBOURS: usize = 4;
+
+/// Groups whose distance nowhere falls below this share of its largest are not on their way to meet. The square of the
+/// distance then has its zero at |ξ| > 6, where expansions converge by a factor 10 per degree.
+const APPROACHING: f64 = 0.85;
 
 /// Equations, values and derivatives, of a design on which trials are fitted with full care.
 const SMALL_DESIGN: usize = 150;
@@ -162,7 +166,8 @@ impl Choice<'_, '_, '_> {
     fn trials(&self, grouping: &Grouping, worst: usize) -> Vec<(Group, Option<usize>)> {
         let (groups, group) = (&self.followed.groups, &grouping[worst]);
         let mut others: Vec<usize> = (0..grouping.len()).filter(|&other| other != worst).collect();
-        let distances: Vec<f64> = grouping.iter().map(|other| distance(self.followed, group, other)).collect();
+        others.retain(|&other| approach(self.followed, group, &grouping[other]));
+        let distances: Vec<f64> = grouping.iter().map(|other| distances(self.followed, group, other)[0]).collect();
         others.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)));
         let with_conjugates =
             Some((groups.closed(group), None)).filter(|_| !group.is_closed() && nears_the_axis(self.followed, group));
@@ -172,8 +177,9 @@ impl Choice<'_, '_, '_> {
     }
 }
 
-/// The smallest distance between eigenvalues of two groups at some run, relative to their size.
-fn distance(followed: &Followed<'_>, one: &Group, other: &Group) -> f64 {
+/// The smallest and the largest over all runs of the distance between two groups, relative to the size of their
+/// eigenvalues.
+fn distances(followed: &Followed<'_>, one: &Group, other: &Group) -> [f64; 2] {
     let at_run = |run: usize| {
         let of =
             |group: &Group| -> Vec<_> { group.labels().iter().map(|&label| followed.eigenvalue(run, label)).collect() };
@@ -183,7 +189,14 @@ fn distance(followed: &Followed<'_>, one: &Group, other: &Group) -> f64 {
         };
         one.iter().flat_map(|a| other.iter().map(move |b| relative(a, b))).fold(f64::INFINITY, f64::min)
     };
-    (0..followed.runs.len()).map(at_run).fold(f64::INFINITY, f64::min)
+    let found: Vec<f64> = (0..followed.runs.len()).map(at_run).collect();
+    [found.iter().copied().fold(f64::INFINITY, f64::min), found.into_iter().fold(0.0, f64::max)]
+}
+
+/// Whether two groups come much closer at some runs than at others.
+fn approach(followed: &Followed<'_>, one: &Group, other: &Group) -> bool {
+    let [smallest, largest] = distances(followed, one, other);
+    smallest < APPROACHING * largest
 }
 
 fn sorted(mut grouping: Grouping) -> Grouping {
@@ -199,13 +212,11 @@ fn candidates(followed: &Followed<'_>, finest: &Grouping) -> Vec<Grouping> {
         candidates.push(united(followed, finest, &labels, |a, b| followed.labels.swap(a, b) > threshold));
     }
     candidates.push(united(followed, finest, &labels, |a, b| is_close(followed, a, b)));
-    let (complex, closed): (Vec<&Group>, Vec<&Group>) = finest.iter().partition(|group| !group.is_closed());
-    let all = |groups: &[&Group]| {
-        groups.iter().map(|group| (*group).clone()).reduce(|whole, group| followed.groups.union(&whole, &group))
-    };
-    candidates.push(sorted(all(&complex).into_iter().chain(all(&closed)).collect()));
-    if finest.iter().any(|group| group.is_closed() || nears_the_axis(followed, group)) {
-        candidates.extend(all(&finest.iter().collect::<Vec<_>>()).map(|whole| vec![followed.groups.closed(&whole)]));
+    candidates.push(connected(followed, finest, |a, b| a.is_closed() == b.is_closed()));
+    let is_on_the_axis = |group: &Group| group.is_closed() || nears_the_axis(followed, group);
+    if finest.iter().any(is_on_the_axis) {
+        let close = |group: Group| if is_on_the_axis(&group) { followed.groups.closed(&group) } else { group };
+        candidates.push(sorted(connected(followed, finest, |_, _| true).into_iter().map(close).collect()));
     }
     candidates.retain(|grouping| grouping.iter().all(|group| group.size() <= MOST_IN_CANDIDATE));
     let mut distinct: Vec<Grouping> = Vec::with_capacity(candidates.len());
@@ -248,6 +259,23 @@ fn united(
             }
             grouping.push(whole);
         }
+    }
+    sorted(grouping)
+}
+
+/// The finest groups with those in one that approach each other, directly or through others, where two of them `may`.
+fn connected(followed: &Followed<'_>, finest: &Grouping, may: impl Fn(&Group, &Group) -> bool) -> Grouping {
+    let mut grouping: Grouping = Vec::with_capacity(finest.len());
+    let mut parts: Vec<Vec<&Group>> = Vec::with_capacity(finest.len());
+    for group in finest {
+        let approaches =
+            |part: &Vec<&Group>| part.iter().any(|other| may(group, other) && approach(followed, group, other));
+        let (near, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(approaches);
+        parts = apart;
+        parts.push(near.into_iter().flatten().chain([group]).collect());
+    }
+    for part in parts {
+        grouping.extend(part.into_iter().cloned().reduce(|whole, group| followed.groups.union(&whole, &group)));
     }
     sorted(grouping)
 }
