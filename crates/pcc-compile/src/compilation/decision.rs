@@ -27,6 +27,7 @@
 //! truth over seeds and sizes: the truth is a half to three quarters of the estimate in the median and seldom more than
 //! three times it. Where errors all point the same way, the assumption of independence fails and it can be more.
 
+use super::undecided::{is_chance, undecided};
 use crate::campaign::Run;
 use crate::fitting::fit::Fitted;
 use pcc_evaluate::components::{Block, Output, OutputKind, spectral_abscissa};
@@ -60,6 +61,10 @@ const RECOMBINATION: f64 = 1e-7;
 /// Bounds are exceeded by rounding by less.
 const ROUNDING_MARGIN: f64 = 1.001;
 
+/// A run is undecided if it lies within its error of the boundary, on either side; errors of one sign move points of
+/// one side.
+const BOTH_SIDES: f64 = 2.0;
+
 /// A mean beyond so many standard errors is no chance.
 const SIGNIFICANT: f64 = 4.0;
 
@@ -76,11 +81,14 @@ pub(super) struct Previous {
 }
 
 /// What is known of a surrogate's decision.
+#[derive(Default)]
 pub(super) struct Judgement {
     /// What is stored.
     pub decision: Decision,
     /// The estimated relative error without the parts that more runs do not lower, or are not worth.
     pub reducible_error: Option<f64>,
+    /// Whether more runs are undecided than so small an error explains.
+    pub is_doubtful: bool,
     /// For the next level.
     pub previous: Option<Previous>,
 }
@@ -98,15 +106,16 @@ pub(super) fn judge(
 ) -> Result<Judgement, Interrupted> {
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
     let Some(left_out) = left_out else {
-        return Ok(Judgement { decision: Decision::default(), reducible_error: None, previous: None });
+        return Ok(Judgement::default());
     };
     let seen: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
     let blind = blind_residuals(fitted, runs.len());
-    let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
+    let honest = honest_residuals(&seen, &blind);
+    let max_re_residuals = residual_quantiles(surrogate, &honest, values, runs);
     let forgotten = forgotten_share(surrogate, values, runs);
     if is_last && previous.is_none() && forgotten == 0.0 {
         let decision = Decision { max_re_residuals, proportion_error: None };
-        return Ok(Judgement { decision, reducible_error: None, previous: None });
+        return Ok(Judgement { decision, ..Judgement::default() });
     }
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
@@ -124,7 +133,9 @@ pub(super) fn judge(
         error => Some(error.unwrap_or(0.0).hypot(forgotten / now.proportion)).filter(|error| error.is_finite()),
     };
     let decision = Decision { max_re_residuals, proportion_error: error };
-    Ok(Judgement { decision, reducible_error, previous: Some(now) })
+    let undecided = undecided(surrogate, values, &seen, runs);
+    let is_doubtful = !is_chance(undecided, BOTH_SIDES * now.mean_change * runs.len() as f64);
+    Ok(Judgement { decision, reducible_error, is_doubtful, previous: Some(now) })
 }
 
 /// The residuals of the last points of the design, by point, that no component has used for a choice.

@@ -15,6 +15,7 @@ mod stopping;
 #[cfg(test)]
 mod tests;
 mod to_file;
+mod undecided;
 mod unseen;
 
 pub use error::BuildError;
@@ -116,10 +117,11 @@ fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Obser
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let is_last = next.is_none() || stopping.needs_no_judgement(&results);
         let judgement = judge(&surrogate, &results, &level.values, evaluations.runs(), previous, is_last, observer)?;
-        (surrogate.decision, previous) = (judgement.decision, judgement.previous);
+        surrogate.decision.clone_from(&judgement.decision);
+        previous = judgement.previous;
         stopping.note(judgement.reducible_error, size);
         match next {
-            Some(next) if !stopping.holds(&results, judgement.reducible_error, size) => size = next,
+            Some(next) if !stopping.holds(&results, &judgement, size) => size = next,
             _ => {
                 surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
                 return Ok(surrogate);

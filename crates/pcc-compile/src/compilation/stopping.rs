@@ -1,9 +1,10 @@
 //! The stopping rule: when a design is large enough.
 //!
 //! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error of the
-//! stability proportion is small enough; or when that error has not fallen for [`PATIENCE`] levels while the design
-//! grew to [`GROWTH`] times its size; or at the largest design.
+//! stability proportion is small enough and explains how many runs are undecided (`undecided.rs`); or when that error
+//! has not fallen for [`PATIENCE`] levels while the design grew to [`GROWTH`] times its size; or at the largest design.
 
+use super::decision::Judgement;
 use crate::fitting::fit::Fitted;
 use crate::study::Study;
 use pcc_evaluate::surrogate::StopReason;
@@ -50,9 +51,10 @@ impl StoppingRule {
         }
     }
 
-    /// Whether a level with these fits and this estimated error is the last.
-    pub fn holds(&self, fitted: &[Fitted], error: Option<f64>, size: usize) -> bool {
-        let is_small = |tolerance| error.is_some_and(|error| error <= tolerance);
+    /// Whether a level with these fits and this judgement is the last.
+    pub fn holds(&self, fitted: &[Fitted], judgement: &Judgement, size: usize) -> bool {
+        let is_small =
+            |tolerance| !judgement.is_doubtful && judgement.reducible_error.is_some_and(|error| error <= tolerance);
         are_accurate(fitted) && (self.tolerance.is_none_or(is_small) || self.has_stalled(size))
     }
 
@@ -70,6 +72,10 @@ fn are_accurate(fitted: &[Fitted]) -> bool {
 mod tests {
     use super::*;
 
+    fn judged(reducible_error: Option<f64>) -> Judgement {
+        Judgement { reducible_error, ..Judgement::default() }
+    }
+
     fn rule(tolerance: Option<f64>) -> StoppingRule {
         StoppingRule { tolerance, lowest: f64::INFINITY, at_size: 10, levels_since: 0 }
     }
@@ -78,14 +84,16 @@ mod tests {
     fn a_small_error_ends_the_build_and_a_large_one_does_not() {
         let mut rule = rule(Some(1e-3));
         rule.note(Some(2e-3), 10);
-        assert!(!rule.holds(&[], Some(2e-3), 10));
-        assert!(rule.holds(&[], Some(1e-3), 20));
-        assert!(!rule.holds(&[], None, 20), "what is not known is not small");
+        assert!(!rule.holds(&[], &judged(Some(2e-3)), 10));
+        assert!(rule.holds(&[], &judged(Some(1e-3)), 20));
+        assert!(!rule.holds(&[], &judged(None), 20), "what is not known is not small");
+        let doubtful = Judgement { is_doubtful: true, ..judged(Some(1e-3)) };
+        assert!(!rule.holds(&[], &doubtful, 20), "one eigenvalue is not known well enough");
     }
 
     #[test]
     fn without_a_tolerance_the_fits_decide() {
-        assert!(rule(None).needs_no_judgement(&[]) && rule(None).holds(&[], None, 10));
+        assert!(rule(None).needs_no_judgement(&[]) && rule(None).holds(&[], &judged(None), 10));
         assert!(!rule(Some(1e-3)).needs_no_judgement(&[]));
     }
 
@@ -95,12 +103,12 @@ mod tests {
         rule.note(Some(1e-3), 10);
         for size in [12, 14, 16] {
             rule.note(Some(2e-3), size);
-            assert!(!rule.holds(&[], Some(2e-3), size), "{size}");
+            assert!(!rule.holds(&[], &judged(Some(2e-3)), size), "{size}");
         }
         rule.note(Some(2e-3), 18);
-        assert!(!rule.holds(&[], Some(2e-3), 18), "four levels, but not twice the size");
-        assert!(rule.holds(&[], Some(2e-3), 20));
+        assert!(!rule.holds(&[], &judged(Some(2e-3)), 18), "four levels, but not twice the size");
+        assert!(rule.holds(&[], &judged(Some(2e-3)), 20));
         rule.note(Some(5e-4), 20);
-        assert!(!rule.holds(&[], Some(5e-4), 20), "it falls again");
+        assert!(!rule.holds(&[], &judged(Some(5e-4)), 20), "it falls again");
     }
 }
