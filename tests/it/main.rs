@@ -3,6 +3,7 @@
 mod support;
 
 mod certificates;
+mod closed_groups;
 mod clusters;
 mod clutch_reference;
 mod command_line;
