@@ -205,6 +205,13 @@ impl FitReport {
                 counts.values
             ));
         }
+        if surrogate.training.settings.iter().any(|setting| setting.key == "labels") {
+            warnings.push(
+                "eigenvalues could not be followed by their vectors in every run; they are told apart by |λ|, and those that change \
+                 places are fitted together"
+                    .to_owned(),
+            );
+        }
         warnings.extend(Self::distrusted(surrogate));
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
@@ -351,6 +358,7 @@ impl fmt::Display for BuildReport {
 mod tests {
     use super::*;
     use pcc_evaluate::artifact::decode;
+    use pcc_evaluate::surrogate::Setting;
 
     #[test]
     fn runs_without_derivatives_are_counted_and_reported() {
@@ -368,5 +376,9 @@ mod tests {
         weights.unwrap().value = SettingValue::Text("1 0 1 1 1 1 0.1 0".to_owned());
         let said = "the derivatives of im_1, im_c0_3_4 contradict the values";
         assert!(FitReport::warnings_of(&surrogate)[0].starts_with(said));
+
+        let labels = Setting { key: "labels".to_owned(), value: SettingValue::Text("modulus".to_owned()) };
+        surrogate.training.settings.push(labels);
+        assert!(FitReport::warnings_of(&surrogate)[0].contains("told apart by |λ|"));
     }
 }

@@ -220,3 +220,35 @@ fn a_certificate_that_contradicts_the_surrogate_is_said_first() {
     let (warning, headline) = (said.find("a certificate contradicts").unwrap(), said.find("  stable ").unwrap());
     assert!(warning < headline, "{said}");
 }
+
+/// A mass, a time constant that vanish inside the ranges, and a mass that does so at their edge.
+#[test]
+fn an_eigenvalue_that_goes_to_infinity_is_an_error_that_names_the_place() {
+    let mass = r#"
+        kind = "matrices"
+        M = { diagonal = ["x", 1] }
+        C = { diagonal = [2, "c"] }
+        K = [[50, -5], [-5, 100]]"#;
+    let lag = r#"
+        kind = "matrices"
+        A = [["-1/x", "1/x", 0], [0, 0, 1], [-5, -30, "-c"]]"#;
+    for (model, lower, upper) in [(mass, -0.5, 1.0), (mass, 0.0, 1.0), (lag, -0.01, 0.03)] {
+        let study = format!(
+            r#"
+            format = 1
+            name = "infinite"
+            [model]{model}
+            [inputs]
+            x = {{ distribution = "uniform", lower = {lower}, upper = {upper} }}
+            c = {{ distribution = "uniform", lower = -1.0, upper = 2.0 }}
+            [spectrum]
+            target = "invariants"
+            "#
+        );
+        let study = Study::from_toml(&study).unwrap();
+        let message = build(&study, &Silent).unwrap_err().to_string();
+        let place = message.split("near x = ").nth(1).and_then(|rest| rest.split(',').next()).unwrap_or_default();
+        assert!(message.starts_with("an eigenvalue goes to infinity"), "{message}");
+        assert!(place.parse::<f64>().unwrap().abs() < 1e-3 * (upper - lower), "{message}");
+    }
+}

@@ -236,16 +236,12 @@ fn effective_count(weights: &[f64]) -> f64 {
 
 /// A surrogate at the points at which proportions are compared, the same for all of a dimension and seed.
 pub(super) fn at_judged_points(surrogate: &Surrogate, observer: &dyn Observer) -> Result<Block, Interrupted> {
-    let (inputs, seed) = (&surrogate.inputs, surrogate.training.seed);
     let plan = Plan::new(surrogate);
     const PART: usize = 4096;
     let parts = try_map(POINTS.div_ceil(PART), |part| {
         observer.check()?;
         let range = part * PART..POINTS.min((part + 1) * PART);
-        let mut points = vec![vec![0.0; inputs.dimension()]; range.len()];
-        for (point, i) in points.iter_mut().zip(range) {
-            random_point(inputs, seed, Purpose::Design, FIRST_INDEX + i as u64, point);
-        }
+        let points: Vec<Vec<f64>> = range.map(|i| judged_point(surrogate, i)).collect();
         Ok(evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>()))
     })?;
     let mut block = Block::with_capacity(surrogate.component_count(), surrogate.labels().len(), POINTS);
@@ -253,6 +249,14 @@ pub(super) fn at_judged_points(surrogate: &Surrogate, observer: &dyn Observer) -
         block.append(part);
     }
     Ok(block)
+}
+
+/// The standardized point number `i` of those.
+pub(super) fn judged_point(surrogate: &Surrogate, i: usize) -> Vec<f64> {
+    let mut point = vec![0.0; surrogate.inputs.dimension()];
+    let (inputs, seed) = (&surrogate.inputs, surrogate.training.seed);
+    random_point(inputs, seed, Purpose::Design, FIRST_INDEX + i as u64, &mut point);
+    point
 }
 
 /// The surrogate at many random points.

@@ -37,6 +37,15 @@ pub enum BuildError {
         /// The smallest list that has all of its groups.
         smallest: Vec<usize>,
     },
+    /// An eigenvalue grows beyond all bounds inside the ranges of the inputs.
+    #[error(
+        "an eigenvalue goes to infinity inside the ranges of the inputs, near {point}, as where a mass or a time constant vanishes: it \
+         has no expansion there; narrow the ranges so that this point lies outside"
+    )]
+    Infinite {
+        /// Where: the inputs with their values.
+        point: String,
+    },
     /// The study asks for derivatives, which the model does not have.
     #[error("fit.derivatives: the model has no derivatives; remove the key or set it to \"auto\" or false")]
     NoDerivatives,

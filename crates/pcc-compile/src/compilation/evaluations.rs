@@ -30,6 +30,8 @@ pub(super) struct Level {
     pub gradients: Option<Vec<Gradients>>,
     /// Per component, differences up to this size are rounding of the eigenvalue solver.
     pub resolutions: Vec<f64>,
+    /// Whether eigenvalues of runs with vectors could not be followed by them.
+    pub is_by_modulus: bool,
 }
 
 impl Level {
@@ -120,6 +122,7 @@ impl<'a> Evaluations<'a> {
             gradients: self.gradients(&outputs),
             resolutions: outputs.iter().flat_map(|output| resolutions(output, &self.runs)).collect(),
             outputs,
+            is_by_modulus: false,
         })
     }
 

@@ -129,6 +129,18 @@ impl<'a> GroupFits<'a> {
         Ok(())
     }
 
+    /// Fits one more component with these values on the current design, by way of trial.
+    pub fn trial_of_values(
+        &self,
+        values: &[f64],
+        observer: &dyn Observer,
+    ) -> Result<Option<ComponentResult>, Interrupted> {
+        let Some(tables) = &self.tables else { return Ok(None) };
+        let response = Response::of(values, 0.0);
+        let found = self.fit.fit(tables, &[response], &[self.fit.nothing()], (Care::Trial, false), observer)?;
+        Ok(found.and_then(|mut found| found.pop()).map(|(fit, _)| fit))
+    }
+
     /// A group that was added.
     pub fn get(&self, group: &Group) -> Option<&GroupFit> {
         self.current.get(group)

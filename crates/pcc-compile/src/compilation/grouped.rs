@@ -5,6 +5,7 @@ use super::components::{ComponentFit, ComponentResult};
 use super::evaluations::{Evaluations, Level};
 use super::group_fits::{Followed, GroupFit, GroupFits};
 use super::grouping::{Grouping, choose};
+use super::infinite::infinite_near;
 use super::numbering::numbers;
 use super::unseen::with_unseen_groups;
 use crate::campaign::RunError;
@@ -68,6 +69,12 @@ impl<'a> GroupedEigenvalues<'a> {
         };
         let former = self.former.as_ref().map(|former| (&former.grouping, former.score));
         let (chosen, score) = choose(&followed, &of_interest, former, &mut self.fits, can_grow, observer)?;
+        // A first level predicts little, whatever there is.
+        if self.former.is_some()
+            && let Some(point) = infinite_near(self.study, &followed, &chosen, &self.fits, observer)?
+        {
+            return Err(BuildError::Infinite { point: self.study.inputs.describe(&point) });
+        }
         let chosen = with_unseen_groups(self.study, &followed, chosen, &mut self.fits, can_grow, observer)?;
         self.former = Some(Former { grouping: chosen.clone(), score, kind });
         let fits: Option<Vec<GroupFit>> = chosen.iter().map(|group| self.fits.take(group)).collect();
@@ -91,7 +98,9 @@ impl<'a> GroupedEigenvalues<'a> {
             (numbers.modes.first().copied().unwrap_or(usize::MAX), numbers.reals.first().copied())
         });
         drop(followed);
-        Ok(Some(level(samples, numbered)))
+        let (mut level, results) = level(samples, numbered);
+        level.is_by_modulus = has_derivatives && !kind.follow_vectors;
+        Ok(Some((level, results)))
     }
 
     /// The finest groups of listed modes, where frequency ranks are numbers of modes.
@@ -192,5 +201,5 @@ fn level(
         results.extend(fit.fits);
         gradients = gradients.zip(fit.gradients).map(|(all, own)| [all, own].concat());
     }
-    (Level { samples, outputs: with_ids(outputs), values, gradients, resolutions }, results)
+    (Level { samples, outputs: with_ids(outputs), values, gradients, resolutions, is_by_modulus: false }, results)
 }

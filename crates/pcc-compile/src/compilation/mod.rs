@@ -8,6 +8,7 @@ mod evaluations;
 mod group_fits;
 mod grouped;
 mod grouping;
+mod infinite;
 mod numbering;
 mod ranked;
 mod record;

@@ -57,7 +57,10 @@ pub(super) fn surrogate(
     sizes: &[u64],
 ) -> Surrogate {
     let runs = (evaluations.runs().len(), evaluations.failed() as u64);
-    let training = training(study, fitted, level.gradients.as_deref(), runs, sizes.to_vec());
+    let mut training = training(study, fitted, level.gradients.as_deref(), runs, sizes.to_vec());
+    if level.is_by_modulus {
+        training.settings.push(setting("labels", SettingValue::Text("modulus".to_owned())));
+    }
     let whole = Mesh::whole(study.inputs.dimension());
     new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training)
 }

@@ -1,0 +1,74 @@
+//! Eigenvalues that go to infinity inside the ranges of the inputs: where a mass or a time constant vanishes.
+//!
+//! No polynomial follows a group with such an eigenvalue, however many runs there are, and a build would not end. But
+//! the reciprocal of the product of the group's eigenvalues is smooth there, and passes through zero. So where a group
+//! is predicted badly, this reciprocal is fitted by way of trial. If it is predicted well, and is zero at some of the
+//! points at which shares are judged, the eigenvalue goes to infinity there.
+
+use super::decision::{at_judged_points, judged_point};
+use super::group_fits::{Followed, GroupFits};
+use crate::mechanics::spectrum::{Group, Numbers, output};
+use crate::study::Study;
+use nalgebra::Complex;
+use pcc_evaluate::components::OutputKind;
+use pcc_evaluate::foundation::{Interrupted, Observer};
+
+/// Groups with a lower score are predicted well enough to be finite.
+const BAD: f64 = 0.05;
+
+/// Left-out residuals above this share of the spread are no good prediction.
+const GOOD: f64 = 0.1;
+
+/// Reciprocals below this share of the largest are zero, at the edge of the ranges, too.
+const ZERO: f64 = 1e-4;
+
+/// The point, in physical units, next to which an eigenvalue of one of the groups goes to infinity.
+pub(super) fn infinite_near(
+    study: &Study,
+    followed: &Followed<'_>,
+    grouping: &[Group],
+    fits: &GroupFits<'_>,
+    observer: &dyn Observer,
+) -> Result<Option<Vec<f64>>, Interrupted> {
+    let is_bad = |group: &&Group| fits.get(group).is_none_or(|fit| fit.score > BAD);
+    for group in grouping.iter().filter(is_bad) {
+        if let Some(point) = infinite_in(study, &followed.eigenvalues(&followed.groups.closed(group)), fits, observer)?
+        {
+            return Ok(Some(point));
+        }
+    }
+    Ok(None)
+}
+
+/// The same for a group with these eigenvalues, closed under conjugation, at every run.
+fn infinite_in(
+    study: &Study,
+    eigenvalues: &[Vec<Complex<f64>>],
+    fits: &GroupFits<'_>,
+    observer: &dyn Observer,
+) -> Result<Option<Vec<f64>>, Interrupted> {
+    let reciprocals: Vec<f64> =
+        eigenvalues.iter().map(|lambdas| lambdas.iter().product::<Complex<f64>>().re.recip()).collect();
+    if !reciprocals.iter().all(|value| value.is_finite()) {
+        return Ok(None);
+    }
+    let Some(fit) = fits.trial_of_values(&reciprocals, observer)? else { return Ok(None) };
+    let residuals = fit.result.leave_one_out_residuals.as_deref().unwrap_or_default();
+    let error = rms(residuals);
+    let mean = reciprocals.iter().sum::<f64>() / reciprocals.len() as f64;
+    let spread = rms(&reciprocals.iter().map(|value| value - mean).collect::<Vec<_>>());
+    if residuals.is_empty() || error > GOOD * spread {
+        return Ok(None);
+    }
+    let alone = Numbers { modes: Vec::new(), reals: vec![1] };
+    let surrogate = super::record::of_fits(study, &output(OutputKind::Closed, &alone, &[]), &[fit]);
+    let predicted = &at_judged_points(&surrogate, observer)?.components[0];
+    let smallest = (0..predicted.len()).reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
+    let largest = predicted.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let is_zero = |at: &usize| predicted[*at].abs() < ZERO * largest;
+    Ok(smallest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
