@@ -6,7 +6,7 @@ use pcc_compile::compilation::BuiltFile;
 use pcc_compile::study::{DesignKind, Study};
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::inputs::InputSpace;
-use pcc_evaluate::surrogate::{SettingValue, StopReason, Surrogate};
+use pcc_evaluate::surrogate::{Setting, SettingValue, StopReason, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
@@ -190,14 +190,22 @@ impl FitReport {
     /// The same, and what is known of the proportion.
     pub fn warnings_of(surrogate: &Surrogate) -> Vec<String> {
         let mut warnings = Self::warnings_by_method(surrogate, &Self::of(surrogate));
-        let asked = surrogate.training.settings.iter().find(|setting| setting.key == "proportion_tolerance");
+        let setting = |key: &str| surrogate.training.settings.iter().find(|setting| setting.key == key);
+        let asked = setting("proportion_tolerance");
         let tolerance = asked.and_then(|setting| match setting.value {
             SettingValue::Number(tolerance) => Some(tolerance),
             _ => None,
         });
         let counts = surrogate.training.counts;
-        let uses_derivatives = surrogate.training.settings.iter().any(|setting| setting.key == "derivatives");
-        if uses_derivatives && counts.gradients < counts.values {
+        let unlisted = setting("unlisted_runs");
+        if let Some(Setting { value: SettingValue::Integer(unlisted), .. }) = unlisted {
+            warnings.push(format!(
+                "in {unlisted} of {} model runs an eigenvalue that the surrogate does not hold decides whether the system is stable; it \
+                 answers for its own alone; target = \"invariants\" without spectrum.modes holds all",
+                counts.final_mesh
+            ));
+        }
+        if setting("derivatives").is_some() && counts.gradients < counts.values {
             warnings.push(format!(
                 "in {} of {} model runs a group of modes was too close to other modes for derivatives; its values alone entered the \
                  fit there",
@@ -205,7 +213,7 @@ impl FitReport {
                 counts.values
             ));
         }
-        if surrogate.training.settings.iter().any(|setting| setting.key == "labels") {
+        if setting("labels").is_some() {
             warnings.push(
                 "eigenvalues could not be followed by their vectors in every run; they are told apart by |λ|, and those that change \
                  places are fitted together"
@@ -214,9 +222,8 @@ impl FitReport {
         }
         warnings.extend(Self::distrusted(surrogate));
         match (surrogate.decision.proportion_error, tolerance) {
-            (Some(error), tolerance) if error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
-                "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; if spectrum.modes \
-                 leaves out modes that can become unstable, list them; else raise design.maximum or choose another fit.method, and check \
+            (Some(error), tolerance) if unlisted.is_none() && error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
+                "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; else raise design.maximum or choose another fit.method, and check \
                  with pcc compare or certify",
                 significant(100.0 * error, 2)
             )),
@@ -358,7 +365,6 @@ impl fmt::Display for BuildReport {
 mod tests {
     use super::*;
     use pcc_evaluate::artifact::decode;
-    use pcc_evaluate::surrogate::Setting;
 
     #[test]
     fn runs_without_derivatives_are_counted_and_reported() {

@@ -200,6 +200,24 @@ fn lists_that_split_a_group_are_answered_with_the_smallest_that_works() {
     assert!(message.contains("modes = [1, 2, 3]") || message.contains("list both or neither"), "{message}");
 }
 
+/// The capsize of the bicycle diverges whatever its weave does.
+#[test]
+fn an_eigenvalue_that_is_not_listed_and_decides_is_said_by_every_face() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("bike.toml"), text("tests/data/field/bike.toml") + "\n[spectrum]\nmodes = [1]\n").unwrap();
+    let warning = "an eigenvalue that the surrogate does not hold decides";
+    for arguments in [
+        &["build", "bike.toml"][..],
+        &["eval", "bike.pcc", "-n", "1000"],
+        &["eval", "bike.pcc", "-n", "1000", "--json"],
+        &["inspect", "bike.pcc"],
+    ] {
+        let said = output(path, arguments);
+        assert!(said.contains(warning), "{arguments:?}: {said}");
+    }
+}
+
 /// A certificate that excludes the share is said before it.
 #[test]
 fn a_certificate_that_contradicts_the_surrogate_is_said_first() {

@@ -85,6 +85,8 @@ pub(super) struct Previous {
 pub(super) struct Judgement {
     /// What is stored.
     pub decision: Decision,
+    /// Number of runs whose stability the carried modes do not decide as the model does.
+    pub unlisted: u64,
     /// The estimated relative error without the parts that more runs do not lower, or are not worth.
     pub reducible_error: Option<f64>,
     /// Whether more runs are undecided than so small an error explains.
@@ -112,10 +114,11 @@ pub(super) fn judge(
     let blind = blind_residuals(fitted, runs.len());
     let honest = honest_residuals(&seen, &blind);
     let max_re_residuals = residual_quantiles(surrogate, &honest, values, runs);
-    let forgotten = forgotten_share(surrogate, values, runs);
+    let unlisted = (0..runs.len()).filter(|&i| contradicts(surrogate, values, i, &runs[i])).count() as u64;
+    let forgotten = unlisted as f64 / runs.len() as f64;
     if is_last && previous.is_none() && forgotten == 0.0 {
         let decision = Decision { max_re_residuals, proportion_error: None };
-        return Ok(Judgement { decision, ..Judgement::default() });
+        return Ok(Judgement { decision, unlisted, ..Judgement::default() });
     }
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
@@ -135,7 +138,7 @@ pub(super) fn judge(
     let decision = Decision { max_re_residuals, proportion_error: error };
     let undecided = undecided(surrogate, values, &seen, runs);
     let is_doubtful = !is_chance(undecided, BOTH_SIDES * now.mean_change * runs.len() as f64);
-    Ok(Judgement { decision, reducible_error, is_doubtful, previous: Some(now) })
+    Ok(Judgement { decision, unlisted, reducible_error, is_doubtful, previous: Some(now) })
 }
 
 /// The residuals of the last points of the design, by point, that no component has used for a choice.
@@ -151,12 +154,6 @@ fn blind_residuals(fitted: &[Fitted], points: usize) -> Vec<Vec<f64>> {
 fn honest_residuals(seen: &[Vec<f64>], blind: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let inflated = seen[..seen.len() - blind.len()].iter();
     inflated.map(|rest| rest.iter().map(|e| FLATTERY * e).collect()).chain(blind.iter().cloned()).collect()
-}
-
-/// Share of the runs whose stability the carried modes do not decide as the model does.
-fn forgotten_share(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run]) -> f64 {
-    let forgotten = runs.iter().enumerate().filter(|(i, run)| contradicts(surrogate, values, *i, run));
-    forgotten.count() as f64 / runs.len() as f64
 }
 
 /// max Re λ at run i over the modes that the surrogate carries, by the model.
@@ -189,12 +186,15 @@ fn residual_quantiles(
 /// What is known of a surrogate by quadrature, from `values` of its components and `runs` at nodes with these
 /// `weights`, which sum to one. Residuals at nodes say nothing of what lies between them, so only the share of cases is
 /// known in which modes that the surrogate does not carry decide stability.
-pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run], weights: &[f64]) -> Decision {
+pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &[Run], weights: &[f64]) -> Judgement {
     let share = |holds: &dyn Fn(usize) -> bool| (0..runs.len()).filter(|&i| holds(i)).map(|i| weights[i]).sum::<f64>();
-    let forgotten = share(&|i| contradicts(surrogate, values, i, &runs[i]));
+    let is_unlisted: Vec<bool> = (0..runs.len()).map(|i| contradicts(surrogate, values, i, &runs[i])).collect();
+    let unlisted = is_unlisted.iter().filter(|&&holds| holds).count() as u64;
+    let forgotten = share(&|i| is_unlisted[i]);
     let stable = share(&|i| carried_max_re(surrogate, values, i) < 0.0);
     let proportion_error = (forgotten > 0.0).then_some(forgotten / stable).filter(|error| error.is_finite());
-    Decision { max_re_residuals: Vec::new(), proportion_error }
+    let decision = Decision { max_re_residuals: Vec::new(), proportion_error };
+    Judgement { decision, unlisted, ..Judgement::default() }
 }
 
 /// ε of the module's head, relative to the proportion, where shares below `unseen` are not seen.

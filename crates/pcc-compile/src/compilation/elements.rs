@@ -233,7 +233,8 @@ impl<'a> Elements<'a> {
         let mut surrogate =
             record::of_elements(self.study, self.mesh, self.outputs, &fitted, counts, self.levels.clone());
         let runs: Vec<Run> = self.runs.into_iter().flatten().collect();
-        surrogate.decision = decision::judge_by_nodes(&surrogate, &values, &runs, &weights);
+        let judgement = decision::judge_by_nodes(&surrogate, &values, &runs, &weights);
+        record::judged(&mut surrogate, &judgement);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
         Ok(surrogate)
     }

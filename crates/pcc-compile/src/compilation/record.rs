@@ -1,6 +1,7 @@
 //! From fitted components to a surrogate that carries its own history.
 
 use super::components::ComponentResult;
+use super::decision::Judgement;
 use super::evaluations::{Evaluations, Level};
 use crate::fitting::design::NestedLatinHypercube;
 use crate::fitting::fit::method::{MethodSetting, Value};
@@ -70,6 +71,14 @@ pub(super) fn of_fits(study: &Study, output: &Output, fitted: &[ComponentResult]
     let training = training(study, fitted, None, (0, 0), Vec::new());
     let whole = Mesh::whole(study.inputs.dimension());
     new(study, whole, vec![output.clone()], fitted.iter().map(|fit| &fit.result), training)
+}
+
+/// Takes down what is known of a surrogate's decision.
+pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement) {
+    surrogate.decision.clone_from(&judgement.decision);
+    if judgement.unlisted > 0 {
+        surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
+    }
 }
 
 fn new<'a>(
