@@ -199,9 +199,12 @@ impl FitReport {
         let counts = surrogate.training.counts;
         let unlisted = setting("unlisted_runs");
         if let Some(Setting { value: SettingValue::Integer(unlisted), .. }) = unlisted {
+            let error = surrogate.decision.proportion_error.map_or(String::new(), |error| {
+                format!(", and the proportion may be off by {} % of itself", significant(100.0 * error, 2))
+            });
             warnings.push(format!(
-                "in {unlisted} of {} model runs an eigenvalue that the surrogate does not hold decides whether the system is stable; it \
-                 answers for its own alone; target = \"invariants\" without spectrum.modes holds all",
+                "in {unlisted} of {} model runs an eigenvalue that the surrogate does not hold decides whether the system is stable{error}; \
+                 target = \"invariants\" without spectrum.modes holds all eigenvalues",
                 counts.final_mesh
             ));
         }

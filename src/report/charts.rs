@@ -3,7 +3,7 @@
 use super::sensitivity::{Bounded, IndexPair, SensitivityReport};
 use num_complex::Complex;
 use pcc_charts::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol};
-use pcc_evaluate::components::Block;
+use pcc_evaluate::components::{Block, Label};
 use pcc_evaluate::probability::statistics::density;
 use pcc_evaluate::surrogate::Surrogate;
 use std::f64::consts::TAU;
@@ -111,32 +111,47 @@ fn by_degree(surrogate: &Surrogate, component: usize) -> Vec<f64> {
     squares
 }
 
-/// Growth rate and frequency of every mode over one input.
-pub(super) fn mode_charts(input: &str, x: &[f64], modes: &[usize], block: &Block) -> [Chart; 2] {
-    let chart = |title: String, label: &str, part: fn(&Complex<f64>) -> f64, guides: Vec<Guide>| Chart {
+/// Growth rate of every eigenvalue and frequency of every mode over one input, in the order of their columns.
+pub(super) fn mode_charts(input: &str, x: &[f64], labels: &[Label], block: &Block) -> [Chart; 2] {
+    let mut labelled: Vec<(Label, &Vec<Complex<f64>>)> = labels.iter().copied().zip(&block.eigenvalues).collect();
+    labelled.sort_by_key(|(label, _)| label.column());
+    let name = |label: Label| match label {
+        Label::Mode(mode) => format!("mode {mode}"),
+        Label::Second(mode) => format!("mode {mode}, second"),
+        Label::Real(_) => label.growth_rate(),
+    };
+    let series = |part: fn(&Complex<f64>) -> f64, holds: fn(&Label) -> bool| -> Vec<Series> {
+        let shown = labelled.iter().enumerate().filter(|(_, (label, _))| holds(label));
+        let one = |(number, (label, lambdas)): (usize, &(Label, &Vec<Complex<f64>>))| {
+            // While a mode oscillates, its second eigenvalue is the conjugate of the first.
+            let is_shown = |lambda: &Complex<f64>| !matches!(label, Label::Second(_)) || lambda.im == 0.0;
+            let (x, y): (Vec<f64>, Vec<f64>) = x
+                .iter()
+                .zip(*lambdas)
+                .filter(|(_, lambda)| is_shown(lambda))
+                .map(|(x, lambda)| (*x, part(lambda)))
+                .unzip();
+            (!x.is_empty()).then(|| Series::new(name(*label), color(number), Marks::Points(points(&x, y))))
+        };
+        shown.filter_map(one).collect()
+    };
+    let chart = |title: String, label: &str, series: Vec<Series>, guides: Vec<Guide>| Chart {
         description: format!("{title}, at {} random points of all inputs, from the surrogate.", x.len()),
         title,
         x: Axis::linear(input),
         y: Axis::linear(label),
-        series: modes
-            .iter()
-            .zip(&block.eigenvalues)
-            .enumerate()
-            .map(|(number, (mode, lambdas))| {
-                let marks = Marks::Points(points(x, lambdas.iter().map(part)));
-                Series::new(format!("mode {mode}"), color(number), marks)
-            })
-            .collect(),
+        series,
         guides,
     };
+    let limit = vec![Guide::Horizontal(0.0, "stability limit".to_owned())];
     [
+        chart(format!("Growth rates over {input}"), "Re λ in 1/s", series(|lambda| lambda.re, |_| true), limit),
         chart(
-            format!("Growth rates over {input}"),
-            "Re λ in 1/s",
-            |lambda| lambda.re,
-            vec![Guide::Horizontal(0.0, "stability limit".to_owned())],
+            format!("Frequencies over {input}"),
+            "Im λ/2π in Hz",
+            series(|lambda| lambda.im / TAU, |label| matches!(label, Label::Mode(_))),
+            Vec::new(),
         ),
-        chart(format!("Frequencies over {input}"), "Im λ/2π in Hz", |lambda| lambda.im / TAU, Vec::new()),
     ]
 }
 

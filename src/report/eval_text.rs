@@ -31,6 +31,27 @@ impl Statistics {
     }
 }
 
+impl EvalReport {
+    /// Whether the system can diverge, not only flutter.
+    fn can_diverge(&self) -> bool {
+        self.divergence_proportion > 0.0 || !self.real_eigenvalues.is_empty()
+    }
+
+    /// The answer in a sentence or two.
+    pub(super) fn headline(&self) -> String {
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        let stable = format!("Stable in {} of cases.", percent(self.stable_proportion));
+        match self.can_diverge() {
+            true => format!(
+                "{stable} Flutter in {}, divergence in {}.",
+                percent(self.flutter_proportion),
+                percent(self.divergence_proportion)
+            ),
+            false => stable,
+        }
+    }
+}
+
 impl fmt::Display for EvalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let how = pace(self.samples as f64, self.elapsed_seconds, self.only_in_text.merged_parts);
@@ -41,7 +62,7 @@ impl fmt::Display for EvalReport {
         self.write_circumstances(f)?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         writeln!(f, "  stable                 {}   judged by {}", percent(self.stable_proportion), self.judged_by)?;
-        if self.divergence_proportion > 0.0 || !self.real_eigenvalues.is_empty() {
+        if self.can_diverge() {
             let [unstable, flutter, divergence] =
                 [self.unstable_proportion, self.flutter_proportion, self.divergence_proportion].map(percent);
             writeln!(f, "  unstable               {unstable}   flutter {flutter}, divergence {divergence}")?;

@@ -3,6 +3,7 @@
 use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::confidence::{error_text, is_of_modes_left_out};
+use super::eval::judged_by;
 use super::table::{Align, Table, significant};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
@@ -56,8 +57,10 @@ pub struct InspectReport {
     pub levels: Vec<u64>,
     /// Seed of the design.
     pub seed: u64,
-    /// Frequency ranks of the modes it carries.
+    /// Numbers of the modes it carries.
     pub modes: Vec<usize>,
+    /// The eigenvalues it carries, by which stability is judged.
+    pub judged_by: String,
     /// The uncertain inputs.
     pub inputs: Vec<InputReport>,
     /// Fit of every component.
@@ -133,6 +136,7 @@ impl InspectReport {
             levels: surrogate.training.levels.clone(),
             seed: surrogate.training.seed,
             modes: surrogate.modes(),
+            judged_by: judged_by(surrogate.labels().into_iter()),
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
@@ -213,7 +217,6 @@ impl InspectReport {
     /// What there is to say in words.
     pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
         let settings: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key} {value}")).collect();
-        let modes: Vec<String> = self.modes.iter().map(usize::to_string).collect();
         let test = if self.self_test_holds() { "holds" } else { "FAILS" };
         let mut facts = vec![
             ("study", self.study.clone()),
@@ -229,7 +232,7 @@ impl InspectReport {
             ),
             ("design", format!("{}, levels {}, seed {}", self.design, level_list(&self.levels), self.seed)),
             ("method", format!("{}: {}", self.method, settings.join(", "))),
-            ("modes", format!("{} by frequency rank", modes.join(", "))),
+            ("eigenvalues", format!("{}, numbered by frequency in the middle of the inputs", self.judged_by)),
             ("proportion", self.estimated_error()),
             ("evaluation", format!("{} terms, {} operations per point", self.plan.terms, self.plan.flops)),
             ("self-test", format!("{test}: largest difference {}", significant(self.self_test_difference, 2))),

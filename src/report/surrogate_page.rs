@@ -40,7 +40,7 @@ pub struct SurrogatePage<'a> {
 /// The model at the points of a page.
 #[derive(Debug)]
 pub struct Validation<'a> {
-    /// max Re λ of the model at the first points over the modes that the surrogate carries, in 1/s.
+    /// max Re λ of the model at the first points, over all its eigenvalues, in 1/s.
     pub max_re: &'a [f64],
     /// Surrogate and model on all of these.
     pub compare: &'a CompareReport,
@@ -59,7 +59,7 @@ impl SurrogatePage<'_> {
 
     fn answer(&self, page: &mut Page) {
         let eval = self.eval;
-        page.lead(&format!("Stable in {:.3} % of cases.", 100.0 * eval.stable_proportion));
+        page.lead(&eval.headline());
         page.facts(&eval.confidence.facts());
         eval.warnings.iter().for_each(|warning| page.warning(warning));
         if let Some(Validation { compare, .. }) = &self.validation {
@@ -83,8 +83,7 @@ impl SurrogatePage<'_> {
     fn pictures(&self, page: &mut Page) {
         page.section("Where it loses stability, and why");
         let mut charts = Vec::new();
-        let modes: Vec<String> = self.surrogate.modes().iter().map(usize::to_string).collect();
-        let title = format!("Density of max Re λ over modes {}", modes.join(", "));
+        let title = format!("Density of max Re λ over {}", self.eval.judged_by);
         let surrogate = ("surrogate", Color::Red, self.block.max_re.as_slice());
         match &self.validation {
             Some(Validation { max_re, .. }) => {
@@ -112,7 +111,7 @@ impl SurrogatePage<'_> {
         for j in inputs {
             let input = &self.surrogate.inputs.inputs()[j];
             let x: Vec<f64> = self.points[..shown].iter().map(|point| input.marginal.physical(point[j])).collect();
-            charts.extend(mode_charts(&input.name, &x, &self.surrogate.modes(), &few));
+            charts.extend(mode_charts(&input.name, &x, &self.surrogate.labels(), &few));
         }
         page.charts(&charts);
         page.table(&self.eval.mode_table());

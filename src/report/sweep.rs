@@ -1,7 +1,7 @@
 //! The stability proportion along one input, or over two.
 
 use super::charts::short;
-use super::eval::QuantileReport;
+use super::eval::{QuantileReport, judged_by};
 use super::eval_text::pace;
 use super::survey::{EventReport, LEVEL, conditions_text, events};
 use super::table::{Align, Table, plain, significant};
@@ -30,8 +30,13 @@ pub struct SweepReport {
     pub source: &'static str,
     /// Whether all points are there; false after an interruption.
     pub complete: bool,
-    /// Modes by whose growth rates stability is judged.
+    /// Numbers of the modes that the surrogate holds.
     pub modes: Vec<usize>,
+    /// What stability is judged by.
+    pub judged_by: String,
+    /// Whether some eigenvalues can be real: then systems can diverge.
+    #[serde(skip)]
+    pub can_diverge: bool,
     /// Samples at each point: the same at all of them but for the inputs that are swept.
     pub samples: u64,
     /// Seed of the samples.
@@ -68,6 +73,10 @@ pub struct SweepPoint {
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
+    /// Share of the samples that flutter: the eigenvalue with the largest Re λ is complex.
+    pub flutter_proportion: f64,
+    /// Share of the samples that diverge: it is real.
+    pub divergence_proportion: f64,
     /// Standard error of the share.
     pub standard_error: f64,
     /// Interval of the share: what the finite number of samples leaves open.
@@ -90,9 +99,13 @@ impl SweepReport {
         };
         let point = |(number, cell): (usize, &Cell)| {
             let share = cell.share(LEVEL, |tally| tally.summary.stable);
+            let summary = &cell.total.summary;
+            let proportion = |hits: u64| hits as f64 / summary.samples().max(1) as f64;
             SweepPoint {
+                flutter_proportion: proportion(summary.unstable() - summary.divergent),
+                divergence_proportion: proportion(summary.divergent),
                 values: values(&question.sweeps, number),
-                stable_samples: cell.total.summary.stable,
+                stable_samples: summary.stable,
                 stable_proportion: share.value,
                 standard_error: share.standard_error,
                 interval: share.interval,
@@ -105,6 +118,8 @@ impl SweepReport {
             source: "surrogate",
             complete: found.is_complete,
             modes: surrogate.modes(),
+            judged_by: judged_by(surrogate.labels().into_iter()),
+            can_diverge: surrogate.has_real_eigenvalues(),
             samples: question.samples,
             seed: question.seed,
             sampler: question.sampler.name(),
@@ -120,7 +135,8 @@ impl SweepReport {
     }
 
     /// The points as CSV: values of the swept inputs, bounds of those that are confined, samples, stable samples,
-    /// stable proportion, its interval, the band of the surrogate, the share of each event.
+    /// stable proportion, its interval, the band of the surrogate, where systems can diverge the shares of flutter and
+    /// divergence, the share of each event.
     ///
     /// # Errors
     ///
@@ -132,6 +148,9 @@ impl SweepReport {
         header.extend(self.conditions.iter().flat_map(bounds));
         let columns = ["samples", "stable_samples", "stable_proportion", "lower", "upper", "band_lower", "band_upper"];
         header.extend(columns.map(str::to_owned));
+        if self.can_diverge {
+            header.extend(["flutter_proportion", "divergence_proportion"].map(str::to_owned));
+        }
         header.extend(self.points.first().iter().flat_map(|point| &point.events).map(|event| event.event.clone()));
         writer.write_record(&header)?;
         for point in &self.points {
@@ -144,6 +163,9 @@ impl SweepReport {
             row.extend([point.stable_proportion, lower, upper].map(|share| share.to_string()));
             let band = point.surrogate_band.map_or([None; 2], |band| [Some(band.lower), Some(band.upper)]);
             row.extend(band.map(|share| share.map_or(String::new(), |share| share.to_string())));
+            if self.can_diverge {
+                row.extend([point.flutter_proportion, point.divergence_proportion].map(|share| share.to_string()));
+            }
             row.extend(point.events.iter().map(|event| event.proportion.to_string()));
             writer.write_record(&row)?;
         }
@@ -188,8 +210,7 @@ impl fmt::Display for SweepReport {
         if !self.conditions.is_empty() {
             writeln!(f, "  where                  {}", conditions_text(&self.conditions))?;
         }
-        let modes: Vec<String> = self.modes.iter().map(usize::to_string).collect();
-        writeln!(f, "  judged by              modes {}", modes.join(", "))?;
+        writeln!(f, "  judged by              {}", self.judged_by)?;
         writeln!(f, "  surrogate band         {}\n", self.width_of_band())?;
         match self.sweeps.len() {
             _ if self.points.is_empty() => {}
@@ -223,6 +244,9 @@ impl SweepReport {
         let right = Align::Right;
         let mut columns: Vec<(&str, Align)> = self.sweeps.iter().map(|sweep| (sweep.input.as_str(), right)).collect();
         columns.extend([("stable", right), ("from", right), ("to", right)]);
+        if self.can_diverge {
+            columns.extend([("flutter", right), ("divergence", right)]);
+        }
         let events = self.points.first().map_or(&[][..], |point| &point.events);
         columns.extend(events.iter().map(|event| (event.event.as_str(), right)));
         columns.push(("", Align::Left));
@@ -230,6 +254,9 @@ impl SweepReport {
         for point in &self.points {
             let mut row: Vec<String> = point.values.iter().map(|&value| plain(value)).collect();
             row.extend([point.stable_proportion, point.interval.lower, point.interval.upper].map(percent));
+            if self.can_diverge {
+                row.extend([point.flutter_proportion, point.divergence_proportion].map(percent));
+            }
             row.extend(point.events.iter().map(|event| percent(event.proportion)));
             row.push("█".repeat((LONGEST_BAR * point.stable_proportion.clamp(0.0, 1.0)).round() as usize));
             table.row(row);
@@ -313,6 +340,10 @@ fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
         Series::new("95 % interval", Color::Gray, line(|point| point.interval.upper)),
         Series::new("stable", Color::Blue, line(|point| point.stable_proportion)),
     ];
+    if report.can_diverge {
+        series.push(Series::new("flutter", Color::Red, line(|point| point.flutter_proportion)));
+        series.push(Series::new("divergence", Color::Green, line(|point| point.divergence_proportion)));
+    }
     if report.points.len() <= MARKED {
         let marks = Marks::Symbols(points(|point| point.stable_proportion), Symbol::Circle);
         series.push(Series::new("stable", Color::Blue, marks));

@@ -77,7 +77,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
             let default_runs = if study.model.is_external() { PROGRAM_RUNS } else { RUNS };
             let found =
                 ModelSample::new(campaign, options.runs.unwrap_or(default_runs), options.seed, &context.terminal)
-                    .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re_over(&surrogate.modes()))))
+                    .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re().to_vec())))
                     .inspect_err(|_| context.say_recorded(&books))
                     .map_err(|error| about(&what, error))?;
             let seconds = start.elapsed().as_secs_f64();

@@ -99,7 +99,7 @@ impl<'a> GroupedEigenvalues<'a> {
         });
         drop(followed);
         let (mut level, results) = level(samples, numbered);
-        level.is_by_modulus = has_derivatives && !kind.follow_vectors;
+        level.is_by_modulus = has_derivatives && !kind.follow_vectors && ranked.is_none();
         Ok(Some((level, results)))
     }
 

@@ -4,7 +4,7 @@ use super::compare::{Comparison, eigenvalue_errors};
 use super::direct_computations::{Ranks, ReferenceError, for_each_chunk, surrogate_block};
 use super::matching::Matching;
 use crate::campaign::Campaign;
-use crate::mechanics::spectrum::Spectrum;
+use crate::mechanics::spectrum::{Modes, Spectrum, Target};
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::Block;
@@ -113,16 +113,6 @@ impl<'a> ModelSample<'a> {
         &self.max_re
     }
 
-    /// max Re λ of the model over those of its modes that have these ranks, point by point, in 1/s.
-    pub fn max_re_over(&self, modes: &[usize]) -> Vec<f64> {
-        let chosen = self.modes.iter().zip(&self.eigenvalues).filter(|(mode, _)| modes.contains(mode));
-        let mut largest = vec![f64::NEG_INFINITY; self.len()];
-        for (_, lambdas) in chosen {
-            largest.iter_mut().zip(lambdas).for_each(|(largest, lambda)| *largest = lambda.re.max(*largest));
-        }
-        largest
-    }
-
     /// Standardized coordinates of point `index`.
     pub fn point(&self, index: usize) -> Vec<f64> {
         let mut point = vec![0.0; self.study.inputs.dimension()];
@@ -142,8 +132,8 @@ impl<'a> ModelSample<'a> {
         Ok(all)
     }
 
-    /// Compares a surrogate of the same model and inputs with the model on all points: stability, and the modes both
-    /// have.
+    /// Compares a surrogate of the same model and inputs with the model on all points: stability, and the eigenvalues
+    /// that the study asks for.
     ///
     /// # Errors
     ///
@@ -153,18 +143,23 @@ impl<'a> ModelSample<'a> {
         let plan = Plan::new(surrogate);
         let mut comparison = Comparison::new(self.len() as u64);
         let matching = Matching::new(surrogate, self.study.spectrum.target);
-        let names: Vec<String> =
-            self.modes.iter().flat_map(|mode| ["re", "im"].map(|p| format!("{p}_{mode}"))).collect();
+        let listed: Option<Vec<String>> = match &self.study.spectrum.modes {
+            Modes::All => None,
+            Modes::Ranks(modes) => {
+                Some(modes.iter().flat_map(|mode| ["re", "im"].map(|p| format!("{p}_{mode}"))).collect())
+            }
+        };
+        // Where the number of modes changes from point to point, frequency ranks say nothing of who is who.
+        let has_names = self.study.spectrum.target == Target::Invariants || !self.modes.is_empty();
         self.for_each_block(surrogate, &plan, self.len(), |start, block| {
             let range = start..start + block.max_re.len();
             comparison.classify(self.max_re[range.clone()].iter().copied(), &block);
-            // Where modes have no ranks, none are those of the study.
-            if names.is_empty() {
+            if !has_names {
                 return;
             }
             let spectra: Vec<Spectrum> = range.filter_map(|index| self.spectrum(index)).collect();
             let mut errors = eigenvalue_errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block);
-            errors.retain(|error| names.contains(&error.name));
+            errors.retain(|error| listed.as_ref().is_none_or(|names| names.contains(&error.name)));
             comparison.merge(errors);
         })?;
         Ok(comparison)
