@@ -61,6 +61,8 @@ pub struct InspectReport {
     pub modes: Vec<usize>,
     /// The eigenvalues it carries, by which stability is judged.
     pub judged_by: String,
+    /// Number of eigenvalues of the model that are rigid-body motion, which takes no part in stability.
+    pub rigid_body_modes: usize,
     /// The uncertain inputs.
     pub inputs: Vec<InputReport>,
     /// Fit of every component.
@@ -137,6 +139,7 @@ impl InspectReport {
             seed: surrogate.training.seed,
             modes: surrogate.modes(),
             judged_by: judged_by(surrogate.labels().into_iter()),
+            rigid_body_modes: surrogate.verdict.rigid_body_modes,
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
@@ -239,6 +242,10 @@ impl InspectReport {
             ("problem hash", self.problem_hash.clone()),
             ("content id", self.content_id.clone()),
         ];
+        if self.rigid_body_modes > 0 {
+            let motion = format!("{} eigenvalues, zero everywhere and left out", self.rigid_body_modes);
+            facts.insert(6, ("rigid body", motion));
+        }
         if self.elements > 1 {
             let mesh =
                 format!("{}, {} model runs in the final mesh", self.elements, count(self.final_mesh_computations));

@@ -196,6 +196,10 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
+fn verdict(b: &mut B) -> Value {
+    b.fields(&[("rigid_body_modes", &u32_number)])
+}
+
 /// The document that a file holds, read by hand.
 fn document(file: &[u8]) -> Value {
     let mut b = Bytes { bytes: file.to_vec(), at: 0 };
@@ -203,7 +207,7 @@ fn document(file: &[u8]) -> Value {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [Field; 8] = [
+    let sections: [Field; 9] = [
         ("meta", &meta),
         ("inputs", &inputs),
         ("outputs", &outputs),
@@ -212,10 +216,15 @@ fn document(file: &[u8]) -> Value {
         ("training", &training),
         ("decision", &decision),
         ("self_test", &self_test),
+        ("verdict", &verdict),
     ];
-    for (position, (name, read)) in sections.into_iter().enumerate() {
-        let [kind, version, flags, reserved] = [b.u16(), b.u16(), b.u16(), b.u16()];
-        assert_eq!([kind, flags, reserved], [position as u16 + 1, 1, 0], "header of {name}");
+    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10].into_iter().zip(sections) {
+        if kind == 10 && b.at == file.len() - 4 {
+            break;
+        }
+        let header = [b.u16(), b.u16(), b.u16(), b.u16()];
+        let version = header[1];
+        assert_eq!(header, [kind, version, 1, 0], "header of {name}");
         let length = b.u64() as usize;
         let before = b.at;
         document[name] = match (name, version) {
@@ -246,6 +255,16 @@ fn it_reads_groups_that_are_closed_under_conjugation() {
     assert_eq!(found, json);
     assert_eq!(found["format"]["minor"], 3);
     assert!(found["outputs"]["outputs"].as_array().unwrap().iter().any(|output| output["kind"] == "closed"));
+}
+
+#[test]
+fn it_reads_what_the_verdict_rests_on() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::field::built("driveline");
+    let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(&surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    assert_eq!(found["verdict"]["rigid_body_modes"], 1);
 }
 
 #[test]

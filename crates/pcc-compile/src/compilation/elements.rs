@@ -234,7 +234,7 @@ impl<'a> Elements<'a> {
             record::of_elements(self.study, self.mesh, self.outputs, &fitted, counts, self.levels.clone());
         let runs: Vec<Run> = self.runs.into_iter().flatten().collect();
         let judgement = decision::judge_by_nodes(&surrogate, &values, &runs, &weights);
-        record::judged(&mut surrogate, &judgement);
+        record::judged(&mut surrogate, &judgement, &runs);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
         Ok(surrogate)
     }

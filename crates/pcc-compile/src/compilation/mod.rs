@@ -118,7 +118,7 @@ fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Obser
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let is_last = next.is_none() || stopping.needs_no_judgement(&results);
         let judgement = judge(&surrogate, &results, &level.values, evaluations.runs(), previous, is_last, observer)?;
-        record::judged(&mut surrogate, &judgement);
+        record::judged(&mut surrogate, &judgement, evaluations.runs());
         previous = judgement.previous;
         stopping.note(judgement.reducible_error, size);
         match next {

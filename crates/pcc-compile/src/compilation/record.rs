@@ -3,6 +3,7 @@
 use super::components::ComponentResult;
 use super::decision::Judgement;
 use super::evaluations::{Evaluations, Level};
+use crate::campaign::Run;
 use crate::fitting::design::NestedLatinHypercube;
 use crate::fitting::fit::method::{MethodSetting, Value};
 use crate::fitting::fit::{FitMethod, Fitted};
@@ -12,6 +13,7 @@ use pcc_evaluate::components::{Component, Output};
 use pcc_evaluate::polynomials::Mesh;
 use pcc_evaluate::surrogate::{
     Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, Surrogate, Training,
+    VerdictBasis,
 };
 
 fn setting(key: &str, value: SettingValue) -> Setting {
@@ -73,8 +75,10 @@ pub(super) fn of_fits(study: &Study, output: &Output, fitted: &[ComponentResult]
     new(study, whole, vec![output.clone()], fitted.iter().map(|fit| &fit.result), training)
 }
 
-/// Takes down what is known of a surrogate's decision.
-pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement) {
+/// Takes down what is known of a surrogate's decision, and what of the spectra of `runs` takes no part in it.
+pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[Run]) {
+    let rigid_body_modes = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
+    surrogate.verdict = VerdictBasis { rigid_body_modes };
     surrogate.decision.clone_from(&judgement.decision);
     if judgement.unlisted > 0 {
         surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
@@ -108,6 +112,7 @@ fn new<'a>(
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         certificates: Vec::new(),
+        verdict: VerdictBasis::default(),
     }
 }
 

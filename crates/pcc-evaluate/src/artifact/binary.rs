@@ -35,8 +35,18 @@ impl Section {
 }
 
 /// Names of the sections of kind 1, 2, ….
-pub(super) const SECTION_NAMES: [&str; 9] =
-    ["meta", "inputs", "outputs", "elements", "expansions", "training", "decision", "self_test", "certificates"];
+pub(super) const SECTION_NAMES: [&str; 10] = [
+    "meta",
+    "inputs",
+    "outputs",
+    "elements",
+    "expansions",
+    "training",
+    "decision",
+    "self_test",
+    "certificates",
+    "verdict",
+];
 
 /// Kind of the section of outputs, which has two versions.
 pub(super) const OUTPUTS: u16 = 3;
@@ -44,9 +54,12 @@ pub(super) const OUTPUTS: u16 = 3;
 /// Kind of the optional section of certificates.
 pub(super) const CERTIFICATES: u16 = 9;
 
-/// Sections 2 to 8, those that determine what a surrogate computes.
+/// Kind of the section of the verdict, which readers must understand where it is there.
+pub(super) const VERDICT: u16 = 10;
+
+/// Sections 2 to 8 and 10, those that determine what a surrogate computes.
 fn content_sections(document: &Document) -> Result<Vec<Section>, WriteError> {
-    Ok(vec![
+    let mut sections = vec![
         section(2, &document.inputs)?,
         match &document.outputs {
             AnyOutputs::V1(outputs) => section(OUTPUTS, outputs)?,
@@ -57,7 +70,11 @@ fn content_sections(document: &Document) -> Result<Vec<Section>, WriteError> {
         section(6, &document.training)?,
         section(7, &document.decision)?,
         section(8, &document.self_test)?,
-    ])
+    ];
+    if let Some(verdict) = &document.verdict {
+        sections.push(section(VERDICT, verdict)?);
+    }
+    Ok(sections)
 }
 
 /// All sections in order.
@@ -67,10 +84,11 @@ pub(super) fn sections(document: &Document) -> Result<Vec<Section>, WriteError> 
     if let Some(certificates) = &document.certificates {
         sections.push(section(CERTIFICATES, certificates)?);
     }
+    sections.sort_by_key(|section| section.kind);
     Ok(sections)
 }
 
-/// Hexadecimal SHA-256 of sections 2 to 8.
+/// Hexadecimal SHA-256 of sections 2 to 8, and 10 if there is one.
 pub(super) fn content_id(document: &Document) -> Result<String, WriteError> {
     let mut bytes = Vec::new();
     for section in content_sections(document)? {

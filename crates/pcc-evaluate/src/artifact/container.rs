@@ -1,6 +1,6 @@
 //! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
 
-use super::binary::{CERTIFICATES, OUTPUTS, SECTION_NAMES, decode_body, sections};
+use super::binary::{CERTIFICATES, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, sections};
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
 use super::v2::AnyOutputs;
@@ -85,6 +85,7 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         decision: sections.required(7)?,
         self_test: sections.required(8)?,
         certificates: sections.optional(CERTIFICATES)?,
+        verdict: sections.optional(VERDICT)?,
     };
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }

@@ -8,7 +8,7 @@ use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
 use crate::surrogate::{
     Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
-    StopReason, Surrogate, Training,
+    StopReason, Surrogate, Training, VerdictBasis,
 };
 
 /// Degrees above this are refused, so that a forged index cannot exhaust memory.
@@ -43,6 +43,7 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
         decision: decision(document.decision)?,
         self_test,
         certificates: certificates(document.certificates)?,
+        verdict: verdict(document.verdict)?,
     })
 }
 
@@ -292,6 +293,13 @@ fn training(training: v1::Training) -> Result<Training, ReadError> {
             direct_computations: counts.direct_computations,
         },
     })
+}
+
+fn verdict(stored: Option<v2::Verdict>) -> Result<VerdictBasis, ReadError> {
+    let Some(stored) = stored else { return Ok(VerdictBasis::default()) };
+    let verdict = VerdictBasis { rigid_body_modes: stored.rigid_body_modes as usize };
+    ensure("verdict", verdict != VerdictBasis::default(), || "it says nothing, and should not be there".to_owned())?;
+    Ok(verdict)
 }
 
 fn decision(decision: v1::Decision) -> Result<Decision, ReadError> {

@@ -3,7 +3,7 @@
 use super::error::{ReadError, WriteError};
 use super::{Format, binary, container, decode, encode, from_v1, json, to_v1, v1, v2};
 use crate::components::OutputKind;
-use crate::surrogate::{Certificate, Surrogate};
+use crate::surrogate::{Certificate, Surrogate, VerdictBasis};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
@@ -288,6 +288,42 @@ fn closed_outputs_come_back_in_both_forms() {
         assert!(artifact.surrogate == *CLOSED && artifact.is_canonical && artifact.version == (1, 3));
         assert_eq!(encode(&artifact.surrogate, format).unwrap(), bytes);
     }
+}
+
+/// The same surrogate of a system that moves as a rigid body.
+static FREE: LazyLock<Surrogate> =
+    LazyLock::new(|| Surrogate { verdict: VerdictBasis { rigid_body_modes: 2 }, ..SURROGATE.clone() });
+
+#[test]
+fn the_basis_of_the_verdict_comes_back_in_both_forms_and_belongs_to_the_content() {
+    for format in [Format::Binary, Format::Json] {
+        let bytes = encode(&FREE, format).unwrap();
+        let artifact = decode(&bytes).unwrap();
+        assert!(artifact.surrogate == *FREE && artifact.is_canonical && artifact.version == (1, 3));
+        assert_eq!(encode(&artifact.surrogate, format).unwrap(), bytes);
+        assert_ne!(artifact.content_id, decode(&BYTES).unwrap().content_id);
+    }
+}
+
+#[test]
+fn verdicts_that_make_no_sense() {
+    let nothing = v2::Verdict { rigid_body_modes: 0 };
+    assert_eq!(section_of(meaning(|d| d.verdict = Some(nothing))), "verdict");
+    // Readers must understand it: it cannot be optional, nor of a later version, nor of another length.
+    let optional = forged(|bytes| bytes.extend(section(10, 0, &2u32.to_le_bytes())));
+    assert!(matches!(decode(&optional), Err(ReadError::SectionTable(_))));
+    let later = forged(|bytes| {
+        let mut later = section(10, 1, &2u32.to_le_bytes());
+        later[2] = 2;
+        bytes.extend(later);
+    });
+    assert!(matches!(decode(&later), Err(ReadError::UnknownSection { kind: 10, version: 2, .. })));
+    let long = forged(|bytes| bytes.extend(section(10, 1, &[0; 5])));
+    assert_eq!(decode(&long), Err(ReadError::TrailingBytes { section: "verdict", bytes: 1 }));
+    let short = forged(|bytes| bytes.extend(section(10, 1, &[0; 3])));
+    assert!(matches!(decode(&short), Err(ReadError::Decode { section: "verdict", .. })));
+    let added = forged(|bytes| bytes.extend(section(10, 1, &2u32.to_le_bytes())));
+    assert_eq!(decode(&added), Err(ReadError::ContentId));
 }
 
 #[test]

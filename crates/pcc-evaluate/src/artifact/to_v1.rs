@@ -7,7 +7,7 @@ use super::{binary, v1, v2};
 use crate::components::{Output, OutputKind};
 use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh};
 use crate::probability::inputs::Marginal;
-use crate::surrogate::{Certificate, LeaveOut, SettingValue, StopReason, Surrogate};
+use crate::surrogate::{Certificate, LeaveOut, SettingValue, StopReason, Surrogate, VerdictBasis};
 use std::collections::HashMap;
 
 pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
@@ -34,6 +34,7 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
             tolerance: surrogate.self_test.tolerance,
         },
         certificates: certificates(&surrogate.certificates),
+        verdict: verdict(surrogate.verdict),
     };
     if let Some(section) = not_finite(&document) {
         return Err(WriteError::NotFinite { section });
@@ -219,6 +220,12 @@ fn decision(surrogate: &Surrogate) -> v1::Decision {
         max_re_residuals: quantiles.map(|q| v1::Quantile { level: q.level, value: q.value }).collect(),
         proportion_error: surrogate.decision.proportion_error,
     }
+}
+
+/// Nothing, if there is nothing to say.
+fn verdict(verdict: VerdictBasis) -> Option<v2::Verdict> {
+    let stored = v2::Verdict { rigid_body_modes: verdict.rigid_body_modes as u32 };
+    (verdict != VerdictBasis::default()).then_some(stored)
 }
 
 fn certificates(certificates: &[Certificate]) -> Option<v1::Certificates> {

@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::v2::AnyOutputs;
+use super::v2::{AnyOutputs, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,6 +36,9 @@ pub struct Document {
     /// Section 9, absent if there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificates: Option<Certificates>,
+    /// Section 10, absent if stability is judged by the sign of Re λ alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<Verdict>,
 }
 
 /// Version of the format.
@@ -62,7 +65,7 @@ pub struct Meta {
     pub problem_hash: String,
     /// Hexadecimal SHA-256 of the study with its defaults; informative.
     pub study_hash: String,
-    /// Hexadecimal SHA-256 of sections 2 to 8 in binary form, headers included.
+    /// Hexadecimal SHA-256 of sections 2 to 8, and 10 if there is one, in binary form, headers included.
     pub content_id: String,
 }
 

@@ -1,4 +1,5 @@
-//! Section 3 in version 2: outputs with eigenvalues that are real, or can become so.
+//! Section 3 in version 2: outputs with eigenvalues that are real, or can become so. Section 10: what else there is to
+//! know of the verdict on stability.
 //!
 //! Files are written with version 1 of the section wherever that can say it. The rules of [`super::v1`] hold: a
 //! published body never changes.
@@ -17,6 +18,15 @@ pub enum AnyOutputs {
     V1(v1::Outputs),
     /// Others beside them.
     V2(Outputs),
+}
+
+/// Section 10: what the verdict on stability rests on beside the sign of Re λ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Verdict {
+    /// Number of eigenvalues of the model that are rigid-body motion: zero at every point, and left out of the verdict.
+    pub rigid_body_modes: u32,
 }
 
 /// Section 3, version 2.

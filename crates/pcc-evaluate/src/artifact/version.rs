@@ -1,7 +1,7 @@
 //! Versions of the surrogate file and what this code can do with them.
 
 use crate::components::OutputKind;
-use crate::surrogate::{Expansion, StopReason, Surrogate};
+use crate::surrogate::{Expansion, StopReason, Surrogate, VerdictBasis};
 use std::cmp::Ordering;
 
 /// Major version written and read. It changes when older readers could misunderstand a file.
@@ -15,7 +15,7 @@ pub const MAJOR: u16 = 1;
 ///   equal frequencies within 10⁻¹² by Re λ.
 /// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
 ///   the search for an expansion ended that full expansions have.
-/// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation.
+/// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10.
 pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
@@ -26,7 +26,7 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     };
     let needs_2 = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
-    match surrogate.has_real_eigenvalues() {
+    match surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default() {
         true => 3,
         false if needs_2 => 2,
         false => u16::from(has_clusters),

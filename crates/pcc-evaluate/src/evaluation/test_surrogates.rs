@@ -3,7 +3,9 @@
 use crate::components::{Component, Output, OutputKind};
 use crate::polynomials::{IndexSet, Mesh, MultiIndex};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
-use crate::surrogate::{Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, StopReason, Surrogate, Training};
+use crate::surrogate::{
+    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, StopReason, Surrogate, Training, VerdictBasis,
+};
 
 /// The standardized variable ξ in terms of φ_1 = √3 ξ: the coefficient of φ_1.
 pub const XI: f64 = 0.577_350_269_189_625_8;
@@ -71,6 +73,7 @@ pub fn surrogate(inputs: InputSpace, growth_rates: Vec<Expansion>) -> Surrogate 
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 1e-9 },
         certificates: Vec::new(),
+        verdict: VerdictBasis::default(),
     }
 }
 

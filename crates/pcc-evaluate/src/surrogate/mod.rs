@@ -10,7 +10,7 @@ pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
 pub use analysis::FitQuality;
 pub use records::{
     Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
-    StopReason, Training,
+    StopReason, Training, VerdictBasis,
 };
 pub use sobol::SobolIndices;
 
@@ -43,6 +43,8 @@ pub struct Surrogate {
     pub self_test: SelfTest,
     /// Verified bounds, added after the build.
     pub certificates: Vec<Certificate>,
+    /// What the verdict on stability rests on beside the sign of Re λ.
+    pub verdict: VerdictBasis,
 }
 
 impl Surrogate {

@@ -135,6 +135,13 @@ pub struct Counts {
     pub direct_computations: u64,
 }
 
+/// What the verdict on stability rests on beside the sign of Re λ. By default nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct VerdictBasis {
+    /// Number of eigenvalues of the model that are rigid-body motion: zero at every point, and left out of the verdict.
+    pub rigid_body_modes: usize,
+}
+
 /// What is known of the error where stability is decided.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Decision {
