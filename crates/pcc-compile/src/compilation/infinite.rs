@@ -16,10 +16,10 @@ use pcc_evaluate::foundation::{Interrupted, Observer};
 /// Groups with a lower score are predicted well enough to be finite.
 const BAD: f64 = 0.05;
 
-/// Left-out residuals above this share of the spread are no good prediction.
+/// Left-out residuals above this share of what is to be known are no good prediction.
 const GOOD: f64 = 0.1;
 
-/// Reciprocals below this share of the largest are zero, at the edge of the ranges, too.
+/// Reciprocals below this share of their spread are zero.
 const ZERO: f64 = 1e-4;
 
 /// The point, in physical units, next to which an eigenvalue of one of the groups goes to infinity.
@@ -57,16 +57,19 @@ fn infinite_in(
     let error = rms(residuals);
     let mean = reciprocals.iter().sum::<f64>() / reciprocals.len() as f64;
     let spread = rms(&reciprocals.iter().map(|value| value - mean).collect::<Vec<_>>());
-    if residuals.is_empty() || error > GOOD * spread {
+    let is_one_sided = reciprocals.iter().all(|value| *value > 0.0) || reciprocals.iter().all(|value| *value < 0.0);
+    let smallest = reciprocals.iter().map(|value| value.abs()).fold(f64::INFINITY, f64::min);
+    // Of one sign at all runs, it must be known much better than it is small, to be zero at the edge.
+    let needed = if is_one_sided { GOOD * smallest } else { GOOD * spread };
+    if residuals.is_empty() || error > needed {
         return Ok(None);
     }
     let alone = Numbers { modes: Vec::new(), reals: vec![1] };
     let surrogate = super::record::of_fits(study, &output(OutputKind::Closed, &alone, &[]), &[fit]);
     let predicted = &at_judged_points(&surrogate, observer)?.components[0];
-    let smallest = (0..predicted.len()).reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
-    let largest = predicted.iter().map(|value| value.abs()).fold(0.0, f64::max);
-    let is_zero = |at: &usize| predicted[*at].abs() < ZERO * largest;
-    Ok(smallest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))
+    let nearest = (0..predicted.len()).reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
+    let is_zero = |at: &usize| predicted[*at].abs() <= error.max(ZERO * spread);
+    Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))
 }
 
 fn rms(values: &[f64]) -> f64 {

@@ -4,12 +4,12 @@
 //! residuals at runs left out nor more runs of the same kind show it. So neighbours in frequency are fitted as a pair
 //! by way of trial, and their predicted distance, d = ((λ₁ − λ₂)/2)², is looked at where shares are judged, at many
 //! points. If it comes near zero anywhere, nearer than the design alone would call close, or than d is known, they form
-//! a group; unless their eigenvectors follow them through.
+//! a group; unless their eigenvectors follow them through, or the pair is predicted worse than its modes are.
 
 use super::components::Care;
 use super::decision::at_judged_points;
 use super::group_fits::{Followed, GroupFit, GroupFits};
-use super::grouping::Grouping;
+use super::grouping::{Grouping, NEGLIGIBLE};
 use crate::mechanics::spectrum::{CLOSE, Group};
 use crate::study::Study;
 use pcc_evaluate::foundation::{Interrupted, Observer};
@@ -36,7 +36,8 @@ pub(super) fn with_unseen_groups(
         let trial = followed.groups.union(&pair[0], &pair[1]);
         fits.add([&trial], followed, (Care::Trial, can_grow), observer)?;
         let Some(fit) = fits.get(&trial).filter(|fit| fit.fits.len() == fit.values.len()) else { continue };
-        if !closes(study, followed, &trial, fit, observer)? {
+        let apart = pair.iter().filter_map(|group| fits.get(group)).map(|fit| fit.score).fold(NEGLIGIBLE, f64::max);
+        if fit.score > apart || !closes(study, followed, &trial, fit, observer)? {
             continue;
         }
         let holds = |group: &Group| group.labels().iter().any(|label| trial.labels().contains(label));
