@@ -75,11 +75,14 @@ pub(super) fn of_fits(study: &Study, output: &Output, fitted: &[ComponentResult]
     new(study, whole, vec![output.clone()], fitted.iter().map(|fit| &fit.result), training)
 }
 
-/// Takes down what is known of a surrogate's decision, and what of the spectra of `runs` takes no part in it.
+/// Takes down what is known of a surrogate's decision, and what of the spectra of `runs` takes no part in it. Files of
+/// systems whose modes all oscillate do not say the latter, as they never did.
 pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[Run]) {
-    let rigid_body_modes = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
-    surrogate.verdict = VerdictBasis { rigid_body_modes };
     surrogate.decision.clone_from(&judgement.decision);
+    if surrogate.has_real_eigenvalues() {
+        let rigid_body_modes = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
+        surrogate.verdict = VerdictBasis { rigid_body_modes };
+    }
     if judgement.unlisted > 0 {
         surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
     }
