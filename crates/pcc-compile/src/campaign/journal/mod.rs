@@ -21,6 +21,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 use thiserror::Error;
 
 /// The first bytes of a journal. The high bit, line ends and the end-of-file character reveal transfers as text.
@@ -222,16 +223,28 @@ impl Tail {
     }
 }
 
+/// A program that is being started by another thread has this process's files open, and locked, until it runs: so a lock
+/// that was given back may be held for some more milliseconds.
+const LOCK_WAITS: usize = 20;
+const LOCK_WAIT: Duration = Duration::from_millis(5);
+
 /// Opens the file and locks it. Another process may remove its journal between the two: then the file that is locked is
 /// no longer the one at the path, and what is written there would be lost.
 fn locked(path: &Path) -> Result<File, JournalError> {
     let failed = |cause: io::Error| io_error(path, &cause);
+    let mut waits = LOCK_WAITS;
     loop {
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        file.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => JournalError::Locked { path: path.display().to_string() },
-            TryLockError::Error(cause) => failed(cause),
-        })?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) if waits > 0 => {
+                waits -= 1;
+                std::thread::sleep(LOCK_WAIT);
+                continue;
+            }
+            Err(TryLockError::WouldBlock) => return Err(JournalError::Locked { path: path.display().to_string() }),
+            Err(TryLockError::Error(cause)) => return Err(failed(cause)),
+            Ok(()) => {}
+        }
         if is_at(&file, path).map_err(failed)? {
             return Ok(file);
         }
