@@ -5,10 +5,12 @@ use crate::campaign::journal::{JournalError, RunOutcome};
 use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
 use crate::mechanics::spectrum::{Computation, Reductions, Spectrum, SpectrumError};
 use crate::numerics::eigenvalues::SchurForm;
+use crate::numerics::zero_eigenvalues::zero_eigenvalues;
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map, try_map_waiting};
 
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
@@ -115,7 +117,14 @@ pub struct Runner<'a> {
     /// The first point, and how many modes oscillate there, or how many eigenvalues there are.
     first: Option<(Vec<f64>, usize)>,
     modes: Vec<usize>,
+    /// The first points, at which the structure of the model is looked at.
+    structure_points: Vec<Vec<f64>>,
+    /// Number of eigenvalues that are zero by the structure of the model at each of these points.
+    structural_zeros: OnceLock<usize>,
 }
+
+/// Points at which the structure of a model is looked at: what is zero at random points is zero everywhere.
+const STRUCTURE_POINTS: usize = 4;
 
 /// What is kept of a run until all are there: its spectrum, and the reduced systems.
 type RunSpectrum = (Spectrum, Option<Reductions>);
@@ -137,7 +146,17 @@ impl<'a> Runner<'a> {
     /// Runs `model` in place of the study's.
     pub fn of(campaign: impl Into<Campaign<'a>>, model: Box<dyn Model>) -> Self {
         let Campaign { study, ledger } = campaign.into();
-        Self { study, ledger, model, with_derivatives: false, ranks_modes: true, first: None, modes: Vec::new() }
+        Self {
+            study,
+            ledger,
+            model,
+            with_derivatives: false,
+            ranks_modes: true,
+            first: None,
+            modes: Vec::new(),
+            structure_points: Vec::new(),
+            structural_zeros: OnceLock::new(),
+        }
     }
 
     /// Whether the model has derivatives.
@@ -194,6 +213,9 @@ impl<'a> Runner<'a> {
         skips: bool,
         observer: &dyn Observer,
     ) -> Result<Vec<Option<Run>>, RunError> {
+        if self.structure_points.is_empty() {
+            self.structure_points = points.iter().take(STRUCTURE_POINTS).cloned().collect();
+        }
         let known = points.iter().map(|point| self.known(point, skips)).collect::<Result<Vec<_>, _>>()?;
         // Answers that others gave are wrong before the last one is there.
         for (point, known) in points.iter().zip(&known) {
@@ -269,8 +291,28 @@ impl<'a> Runner<'a> {
 
     /// Frequency ranks of the modes that the study asks for, as far as they oscillate.
     fn modes_of_interest(&self, eigenvalues: &[Complex<f64>]) -> Vec<usize> {
-        let count = Spectrum::new(eigenvalues).map_or(0, |spectrum| spectrum.count());
+        let count = self.spectrum(eigenvalues).map_or(0, |spectrum| spectrum.count());
         self.study.spectrum.modes.up_to(count)
+    }
+
+    /// The spectrum with these eigenvalues. Of those that are negligible beside the largest as many are rigid-body
+    /// motion as the structure of the model makes zero: the others are slow. Models that know only their eigenvalues
+    /// have no structure to look at.
+    fn spectrum(&self, eigenvalues: &[Complex<f64>]) -> Result<Spectrum, SpectrumError> {
+        let spectrum = Spectrum::new(eigenvalues)?;
+        let most = if spectrum.rigid_body_modes() > 0 { self.structural_zeros() } else { 0 };
+        let count = spectrum.rigid_body_modes().min(most);
+        spectrum.with_rigid_body_modes(count)
+    }
+
+    fn structural_zeros(&self) -> usize {
+        let zeros = |point: &Vec<f64>| {
+            let linearization = self.model.linearization(point).ok().flatten()?;
+            Some(zero_eigenvalues(linearization.state_matrix))
+        };
+        *self
+            .structural_zeros
+            .get_or_init(|| self.structure_points.iter().filter_map(zeros).min().unwrap_or(usize::MAX))
     }
 
     /// The model at points that the ledger does not know.
@@ -363,7 +405,8 @@ impl<'a> Runner<'a> {
     /// The answer as the study sees it.
     fn see(&self, point: &[f64], computation: Computation) -> Result<RunSpectrum, RunError> {
         let Computation { eigenvalues, reductions } = computation;
-        let spectrum = Spectrum::new(&eigenvalues)
+        let spectrum = self
+            .spectrum(&eigenvalues)
             .map_err(|cause| RunError::Spectrum { point: self.study.inputs.describe(point), cause })?;
         Ok((spectrum, reductions.filter(|_| self.with_derivatives)))
     }
@@ -380,7 +423,10 @@ impl<'a> Runner<'a> {
         }
         let schur = SchurForm::new(state_matrix)?;
         let eigenvalues = schur.eigenvalues();
-        let reductions = Some(Reductions::new(&schur, &derivatives, self.modes_of_interest(&eigenvalues)));
+        let reductions = self
+            .spectrum(&eigenvalues)
+            .ok()
+            .map(|spectrum| Reductions::new(&schur, &derivatives, &spectrum, self.modes_of_interest(&eigenvalues)));
         Ok(Computation { eigenvalues, reductions })
     }
 

@@ -7,3 +7,4 @@ pub mod minimize;
 pub mod positive_definite;
 pub mod qr;
 pub mod quadrature;
+pub mod zero_eigenvalues;

@@ -223,8 +223,8 @@ impl Tail {
     }
 }
 
-/// A program that is being started by another thread has this process's files open, and locked, until it runs: so a lock
-/// that was given back may be held for some more milliseconds.
+/// A program that is being started by another thread has this process's files open, and locked, until it runs: so a
+/// lock that was given back may be held for some more milliseconds.
 const LOCK_WAITS: usize = 20;
 const LOCK_WAIT: Duration = Duration::from_millis(5);
 

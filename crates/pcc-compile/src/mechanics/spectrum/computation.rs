@@ -30,11 +30,10 @@ pub struct Reductions {
 }
 
 impl Reductions {
-    /// Reduces the system of a Schur form, with the derivatives of the state matrix by each input in physical units.
-    /// The modes of interest have the frequency ranks `modes`.
-    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], modes: Vec<usize>) -> Self {
+    /// Reduces the system of a Schur form with this spectrum, with the derivatives of the state matrix by each input in
+    /// physical units. The modes of interest have the frequency ranks `modes`.
+    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], spectrum: &Spectrum, modes: Vec<usize>) -> Self {
         let found = schur.eigenvalues();
-        let Ok(spectrum) = Spectrum::new(&found) else { return Self { modes, systems: Vec::new() } };
         let of_interest: Vec<Complex<f64>> = modes.iter().filter_map(|&mode| spectrum.mode(mode).ok()).collect();
         let reduce = |lambdas: &[Complex<f64>]| match lambdas.is_empty() {
             true => None,

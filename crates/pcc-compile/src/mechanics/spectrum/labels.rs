@@ -218,7 +218,7 @@ mod tests {
         state.view_mut((2, 2), (2, 2)).copy_from(&dmatrix![-0.1, 0.0; 0.0, -0.3]);
         let schur = SchurForm::new(state).unwrap();
         let spectrum = Spectrum::new(&schur.eigenvalues()).unwrap();
-        let vectors = Reductions::new(&schur, &[], vec![1, 2]).vectors(&spectrum).unwrap();
+        let vectors = Reductions::new(&schur, &[], &spectrum, vec![1, 2]).vectors(&spectrum).unwrap();
         (spectrum, vectors)
     }
 
