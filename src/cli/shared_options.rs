@@ -19,7 +19,8 @@ pub(super) struct SamplingOptions {
     #[arg(long, value_name = "IN.csv", requires = "out")]
     pub points: Option<PathBuf>,
 
-    /// CSV file for the results at these points: the point, re_k and im_k of each mode, max_re, stable
+    /// CSV file for the results at these points: the point, re_k and im_k of each mode (re_k_b and real_j where there
+    /// are real eigenvalues), max_re, stable, verdict
     #[arg(long, value_name = "OUT.csv", requires = "points", conflicts_with = "samples")]
     pub out: Option<PathBuf>,
 

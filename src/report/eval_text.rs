@@ -85,12 +85,20 @@ impl fmt::Display for EvalReport {
                 "  error of max Re λ      {low} to {high} 1/s, model minus surrogate, at 95 % of points left out{place}"
             )?;
         }
-        writeln!(f, "\n{}", self.mode_table())?;
-        if let Some(table) = self.kind_table() {
-            writeln!(f, "{table}")?;
+        if self.source == "model" && self.modes.is_empty() {
+            writeln!(
+                f,
+                "\nmodes have no ranks in frequency here; pcc compare shows them by the numbers of a surrogate"
+            )?;
+        } else {
+            writeln!(f, "\n{}", self.mode_table())?;
+            if let Some(table) = self.kind_table() {
+                writeln!(f, "{table}")?;
+            }
+            write!(f, "{}", self.component_table())?;
+            let order = if self.source == "model" { "; modes by rank in frequency at each point" } else { "" };
+            writeln!(f, "re in 1/s, im in rad/s{order}")?;
         }
-        write!(f, "{}", self.component_table())?;
-        writeln!(f, "re in 1/s, im in rad/s")?;
         if let Some(table) = quantiles_table(&self.quantiles) {
             let note =
                 "found by counting in bins of the width in the last column; frequency in Hz, im in rad/s, re in 1/s";

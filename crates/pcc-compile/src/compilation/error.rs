@@ -39,7 +39,7 @@ pub enum BuildError {
     },
     /// An eigenvalue grows beyond all bounds inside the ranges of the inputs.
     #[error(
-        "an eigenvalue goes to infinity inside the ranges of the inputs, near {point}, as where a mass or a time constant vanishes: it \
+        "an eigenvalue goes to infinity, or nearly so, inside the ranges of the inputs, near {point}, as where a mass or a time constant vanishes: it \
          has no expansion there; narrow the ranges so that this point lies outside"
     )]
     Infinite {

@@ -26,7 +26,7 @@ const WORTH: f64 = 3.0;
 
 /// Errors this small relative to the distances that decide are as good as none: they move shares by less than they are
 /// asked for.
-pub(super) const NEGLIGIBLE: f64 = 1e-4;
+const NEGLIGIBLE: f64 = 1e-4;
 
 /// Swap ratios above which labels are united in some candidate.
 const SWAPS: [f64; 3] = [0.5, 0.05, 0.005];

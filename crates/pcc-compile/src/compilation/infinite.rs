@@ -68,7 +68,8 @@ fn infinite_in(
     let surrogate = super::record::of_fits(study, &output(OutputKind::Closed, &alone, &[]), &[fit]);
     let predicted = &at_judged_points(&surrogate, observer)?.components[0];
     let nearest = (0..predicted.len()).reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
-    let is_zero = |at: &usize| predicted[*at].abs() <= error.max(ZERO * spread);
+    let zero = if is_one_sided { error } else { error.max(ZERO * spread) };
+    let is_zero = |at: &usize| predicted[*at].abs() <= zero;
     Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))
 }
 

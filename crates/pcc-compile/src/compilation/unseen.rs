@@ -4,18 +4,27 @@
 //! residuals at runs left out nor more runs of the same kind show it. So neighbours in frequency are fitted as a pair
 //! by way of trial, and their predicted distance, d = ((λ₁ − λ₂)/2)², is looked at where shares are judged, at many
 //! points. If it comes near zero anywhere, nearer than the design alone would call close, or than d is known, they form
-//! a group; unless their eigenvectors follow them through, or the pair is predicted worse than its modes are.
+//! a group; unless their eigenvectors follow them through, or the pair is predicted badly.
+//!
+//! A mode and its own conjugate are such neighbours, too. Where it slows down, both are fitted by way of trial, and are
+//! closed under conjugation if they meet on the real axis at some of these points: divergence that no run has seen.
 
 use super::components::Care;
 use super::decision::at_judged_points;
 use super::group_fits::{Followed, GroupFit, GroupFits};
-use super::grouping::{Grouping, NEGLIGIBLE};
+use super::grouping::Grouping;
 use crate::mechanics::spectrum::{CLOSE, Group};
 use crate::study::Study;
 use pcc_evaluate::foundation::{Interrupted, Observer};
 
 /// Pairs whose d nowhere falls below this share of its largest on the design are not on their way to meet.
 const APPROACHING: f64 = 0.5;
+
+/// Modes whose frequency nowhere falls below this share of its largest are not on their way to the real axis.
+const SLOWING: f64 = 0.85;
+
+/// A trial with a higher score says nothing that its parts do not say better.
+const BAD: f64 = 0.1;
 
 /// Residuals of d within which it may be zero.
 const RESIDUALS: f64 = 3.0;
@@ -36,8 +45,8 @@ pub(super) fn with_unseen_groups(
         let trial = followed.groups.union(&pair[0], &pair[1]);
         fits.add([&trial], followed, (Care::Trial, can_grow), observer)?;
         let Some(fit) = fits.get(&trial).filter(|fit| fit.fits.len() == fit.values.len()) else { continue };
-        let apart = pair.iter().filter_map(|group| fits.get(group)).map(|fit| fit.score).fold(NEGLIGIBLE, f64::max);
-        if fit.score > apart || !closes(study, followed, &trial, fit, observer)? {
+        let apart = pair.iter().filter_map(|group| fits.get(group)).map(|fit| fit.score).fold(0.0, f64::max);
+        if is_worse(fit, apart) || !closes(study, followed, &trial, fit, observer)? {
             continue;
         }
         let holds = |group: &Group| group.labels().iter().any(|label| trial.labels().contains(label));
@@ -49,8 +58,51 @@ pub(super) fn with_unseen_groups(
             grouping = kept;
         }
     }
+    for group in grouping.clone() {
+        if !approaches_the_axis(followed, &group) {
+            continue;
+        }
+        let closed = followed.groups.closed(&group);
+        let apart = fits.get(&group).map_or(f64::INFINITY, |fit| fit.score);
+        fits.add([&closed], followed, (Care::Trial, can_grow), observer)?;
+        let Some(fit) = fits.get(&closed).filter(|fit| fit.fits.len() == fit.values.len()) else { continue };
+        if !is_worse(fit, apart) && meets_the_axis(study, fit, observer)? {
+            grouping.retain(|other| *other != group);
+            grouping.push(closed);
+            grouping.sort_unstable();
+        }
+    }
     fits.add(&grouping, followed, (Care::Full, can_grow), observer)?;
     Ok(grouping)
+}
+
+/// Whether a trial is predicted badly, and worse than what it is made of.
+fn is_worse(trial: &GroupFit, apart: f64) -> bool {
+    trial.score > BAD.max(apart)
+}
+
+/// Whether a mode of a complex group is slower at some runs than at others, so that it may meet its conjugate.
+fn approaches_the_axis(followed: &Followed<'_>, group: &Group) -> bool {
+    let is_slowing = |&label: &usize| {
+        let frequencies = || (0..followed.runs.len()).map(|run| followed.eigenvalue(run, label).im.abs());
+        frequencies().fold(f64::INFINITY, f64::min) < SLOWING * frequencies().fold(0.0, f64::max)
+    };
+    !group.is_closed() && followed.groups.closed(group).is_possible() && group.labels().iter().any(is_slowing)
+}
+
+/// Whether eigenvalues of a group closed under conjugation, which oscillate at every run, are predicted to be real
+/// somewhere. Of a single mode (Im λ)² = e₂ − (e₁/2)² is looked at, and known with its residuals.
+fn meets_the_axis(study: &Study, fit: &GroupFit, observer: &dyn Observer) -> Result<bool, Interrupted> {
+    let block = at_judged_points(&super::record::of_fits(study, &fit.output, &fit.fits), observer)?;
+    let [e_1, e_2] = &block.components[..] else {
+        return Ok(block.eigenvalues.iter().flatten().any(|lambda| lambda.im == 0.0));
+    };
+    let residual = rms(fit.fits[1].result.leave_one_out_residuals.as_deref().unwrap_or_default());
+    Ok(e_1.iter().zip(e_2).any(|(e_1, e_2)| e_2 - 0.25 * e_1 * e_1 < RESIDUALS * residual))
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// Pairs of single modes that are neighbours in frequency, come closer at some runs than at others, and are not

@@ -157,7 +157,9 @@ impl<'a> ModelSample<'a> {
             if !has_names {
                 return;
             }
-            let spectra: Vec<Spectrum> = range.filter_map(|index| self.spectrum(index)).collect();
+            let spectra: Option<Vec<Spectrum>> = range.map(|index| self.spectrum(index)).collect();
+            // They were spectra when they were kept.
+            let Some(spectra) = spectra else { return };
             let mut errors = eigenvalue_errors(surrogate, &matching, &spectra.iter().collect::<Vec<_>>(), &block);
             errors.retain(|error| listed.as_ref().is_none_or(|names| names.contains(&error.name)));
             comparison.merge(errors);
