@@ -4,9 +4,11 @@ pub mod journal;
 mod ledger;
 mod match_answers;
 mod recording;
+mod rigid_body_motion;
 mod run;
 
 pub use ledger::{Campaign, DesignPoint, Failure, Ledger};
 pub use match_answers::{MatchedAnswers, RowProblem, match_answers};
 pub use recording::{Books, Note, Recording, RecordingError, journal_here, journal_of_build, notes_on};
-pub use run::{Run, RunError, Runner, agree_on_rigid_body_motion};
+pub use rigid_body_motion::agree_on_rigid_body_motion;
+pub use run::{Run, RunError, Runner};

@@ -1,16 +1,15 @@
 //! Direct computations at points of the input space, with errors that name the point.
 
 use super::ledger::{Campaign, Ledger};
+use super::rigid_body_motion::Structure;
 use crate::campaign::journal::{JournalError, RunOutcome};
 use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
 use crate::mechanics::spectrum::{Computation, Reductions, Spectrum, SpectrumError};
 use crate::numerics::eigenvalues::SchurForm;
-use crate::numerics::zero_eigenvalues::zero_eigenvalues;
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map, try_map_waiting};
 
-use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
@@ -93,19 +92,6 @@ pub struct Run {
     pub reductions: Option<Reductions>,
 }
 
-/// Takes as many eigenvalues for rigid-body motion as are negligible in every run, at most `known` from earlier ones: a
-/// slow eigenvalue is negligible only where it passes zero. Returns their number.
-pub fn agree_on_rigid_body_motion(runs: &mut [Run], known: usize) -> usize {
-    let count = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0).min(known);
-    for run in runs.iter_mut().filter(|run| run.spectrum.rigid_body_modes() != count) {
-        // Fewer are dropped than before, so some remain.
-        if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(count) {
-            run.spectrum = spectrum;
-        }
-    }
-    count
-}
-
 /// Runs the model of a study. Unless it is told otherwise, modes have frequency ranks, and it sees to it that all
 /// points have the same number of them.
 pub struct Runner<'a> {
@@ -117,14 +103,8 @@ pub struct Runner<'a> {
     /// The first point, and how many modes oscillate there, or how many eigenvalues there are.
     first: Option<(Vec<f64>, usize)>,
     modes: Vec<usize>,
-    /// The first points, at which the structure of the model is looked at.
-    structure_points: Vec<Vec<f64>>,
-    /// Number of eigenvalues that are zero by the structure of the model at each of these points.
-    structural_zeros: OnceLock<usize>,
+    structure: Structure,
 }
-
-/// Points at which the structure of a model is looked at: what is zero at random points is zero everywhere.
-const STRUCTURE_POINTS: usize = 4;
 
 /// What is kept of a run until all are there: its spectrum, and the reduced systems.
 type RunSpectrum = (Spectrum, Option<Reductions>);
@@ -154,8 +134,7 @@ impl<'a> Runner<'a> {
             ranks_modes: true,
             first: None,
             modes: Vec::new(),
-            structure_points: Vec::new(),
-            structural_zeros: OnceLock::new(),
+            structure: Structure::default(),
         }
     }
 
@@ -213,9 +192,6 @@ impl<'a> Runner<'a> {
         skips: bool,
         observer: &dyn Observer,
     ) -> Result<Vec<Option<Run>>, RunError> {
-        if self.structure_points.is_empty() {
-            self.structure_points = points.iter().take(STRUCTURE_POINTS).cloned().collect();
-        }
         let known = points.iter().map(|point| self.known(point, skips)).collect::<Result<Vec<_>, _>>()?;
         // Answers that others gave are wrong before the last one is there.
         for (point, known) in points.iter().zip(&known) {
@@ -295,24 +271,8 @@ impl<'a> Runner<'a> {
         self.study.spectrum.modes.up_to(count)
     }
 
-    /// The spectrum with these eigenvalues. Of those that are negligible beside the largest as many are rigid-body
-    /// motion as the structure of the model makes zero: the others are slow. Models that know only their eigenvalues
-    /// have no structure to look at.
     fn spectrum(&self, eigenvalues: &[Complex<f64>]) -> Result<Spectrum, SpectrumError> {
-        let spectrum = Spectrum::new(eigenvalues)?;
-        let most = if spectrum.rigid_body_modes() > 0 { self.structural_zeros() } else { 0 };
-        let count = spectrum.rigid_body_modes().min(most);
-        spectrum.with_rigid_body_modes(count)
-    }
-
-    fn structural_zeros(&self) -> usize {
-        let zeros = |point: &Vec<f64>| {
-            let linearization = self.model.linearization(point).ok().flatten()?;
-            Some(zero_eigenvalues(linearization.state_matrix))
-        };
-        *self
-            .structural_zeros
-            .get_or_init(|| self.structure_points.iter().filter_map(zeros).min().unwrap_or(usize::MAX))
+        self.structure.spectrum(eigenvalues, self.study, &*self.model)
     }
 
     /// The model at points that the ledger does not know.

@@ -106,7 +106,8 @@ impl<'a> PointReference<'a> {
             let point = self.study.inputs.describe(&middle);
             return Err(RunError::Spectrum { point, cause }.into());
         }
-        let has_reals = !reals.is_empty();
+        let is_real = |run: &Run| run.spectrum.eigenvalues().iter().any(|lambda| lambda.im == 0.0);
+        let has_reals = !reals.is_empty() || first.iter().any(is_real);
         for (mode, at) in (1..).zip(oscillating).filter(|(mode, _)| listed(*mode)) {
             let both = (at, spectrum.conjugate(at));
             labels.push(Label::Mode(mode));

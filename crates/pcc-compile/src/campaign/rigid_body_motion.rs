@@ -1,0 +1,71 @@
+//! Which eigenvalues are rigid-body motion: those that are zero at every point, by the structure of the model.
+//!
+//! Their computed copies scatter about zero, and a slow mode beside a fast one may lie as low, so size alone does not
+//! tell. Where the model has matrices, their null spaces do ([`zero_eigenvalues`]). Models that know only their
+//! eigenvalues are taken at their word: what is negligible at every point is zero.
+
+use super::run::Run;
+use crate::mechanics::model::Model;
+use crate::mechanics::spectrum::{Spectrum, SpectrumError};
+use crate::numerics::zero_eigenvalues::zero_eigenvalues;
+use crate::study::Study;
+use nalgebra::Complex;
+use pcc_evaluate::probability::inputs::random_point;
+use pcc_evaluate::probability::random::Purpose;
+use std::sync::OnceLock;
+
+/// Takes as many eigenvalues for rigid-body motion as are negligible in every run, at most `known` from earlier ones: a
+/// slow eigenvalue is negligible only where it passes zero. Returns their number.
+pub fn agree_on_rigid_body_motion(runs: &mut [Run], known: usize) -> usize {
+    let count = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0).min(known);
+    for run in runs.iter_mut().filter(|run| run.spectrum.rigid_body_modes() != count) {
+        // Fewer are dropped than before, so some remain.
+        if let Ok(spectrum) = run.spectrum.clone().with_rigid_body_modes(count) {
+            run.spectrum = spectrum;
+        }
+    }
+    count
+}
+
+/// Points at which the structure of a model is looked at, whatever the points of the runs: what is zero at random
+/// points is zero everywhere, while a slow eigenvalue may pass zero just where somebody asks.
+const STRUCTURE_POINTS: u64 = 4;
+
+/// They are numbers of a stream that no design has.
+const FIRST_STRUCTURE_POINT: u64 = 1 << 41;
+
+/// What is known of the structure of a model.
+#[derive(Debug, Default)]
+pub(super) struct Structure {
+    /// Number of eigenvalues that it makes zero.
+    zeros: OnceLock<usize>,
+}
+
+impl Structure {
+    /// The spectrum with these eigenvalues of a model. Of those that are negligible beside the largest as many are
+    /// rigid-body motion as the structure of the model makes zero: the others are slow.
+    pub fn spectrum(
+        &self,
+        eigenvalues: &[Complex<f64>],
+        study: &Study,
+        model: &dyn Model,
+    ) -> Result<Spectrum, SpectrumError> {
+        let spectrum = Spectrum::new(eigenvalues)?;
+        let negligible = spectrum.rigid_body_modes();
+        // Most models have none, and need not be looked at.
+        let most = if negligible > 0 { *self.zeros.get_or_init(|| zeros(study, model)) } else { 0 };
+        spectrum.with_rigid_body_modes(negligible.min(most))
+    }
+}
+
+/// The least number of eigenvalues that are zero by structure at some random points; no limit, if it is not known.
+fn zeros(study: &Study, model: &dyn Model) -> usize {
+    let at_point = |index: u64| {
+        let inputs = &study.inputs;
+        let mut point = vec![0.0; inputs.dimension()];
+        random_point(inputs, study.seed, Purpose::Design, FIRST_STRUCTURE_POINT + index, &mut point);
+        let linearization = model.linearization(&inputs.physical(&point)).ok().flatten()?;
+        Some(zero_eigenvalues(linearization.state_matrix))
+    };
+    (0..STRUCTURE_POINTS).filter_map(at_point).min().unwrap_or(usize::MAX)
+}
