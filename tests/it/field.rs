@@ -200,6 +200,39 @@ fn lists_that_split_a_group_are_answered_with_the_smallest_that_works() {
     assert!(message.contains("modes = [1, 2, 3]") || message.contains("list both or neither"), "{message}");
 }
 
+/// Four nearly equal modes: a small design takes them for pairs. The first answer is the last one.
+#[test]
+fn the_smallest_list_that_is_named_works() {
+    let ring = |modes: &str| {
+        format!(
+            r#"
+            format = 1
+            name = "ring"
+            [model]
+            kind = "matrices"
+            M = {{ diagonal = [1, 1, 1, 1] }}
+            C = {{ diagonal = ["c", "c", "c", "c"] }}
+            K = [["1000 + e1", -5, 0, -5], [-5, "1000 + e2", -5, 0], [0, -5, "1000 - e1", -5], [-5, 0, -5, "1000 - e2"]]
+            N = {{ size = 4, form = "skew-symmetric", entries = [[2, 1, "f"], [3, 2, "f"], [4, 3, "f"], [4, 1, "-f"]] }}
+            [inputs]
+            e1 = {{ distribution = "uniform", lower = -8.0, upper = 8.0 }}
+            e2 = {{ distribution = "uniform", lower = -8.0, upper = 8.0 }}
+            f = {{ distribution = "uniform", lower = 0.0, upper = 6.0 }}
+            c = {{ distribution = "uniform", lower = 0.0, upper = 0.3 }}
+            [spectrum]
+            target = "invariants"
+            modes = {modes}
+            "#
+        )
+    };
+    let built = |modes: &str| build(&Study::from_toml(&ring(modes)).unwrap(), &Silent);
+    for modes in ["[2]", "[2, 3]", "[1, 3]"] {
+        let message = built(modes).unwrap_err().to_string();
+        assert!(message.ends_with("use modes = [1, 2, 3, 4]"), "{modes}: {message}");
+    }
+    assert_eq!(built("[1, 2, 3, 4]").unwrap().modes(), [1, 2, 3, 4]);
+}
+
 /// The capsize of the bicycle diverges whatever its weave does.
 #[test]
 fn an_eigenvalue_that_is_not_listed_and_decides_is_said_by_every_face() {

@@ -23,6 +23,9 @@ pub(super) struct GroupedEigenvalues<'a> {
     fits: GroupFits<'a>,
     /// What was decided on the level before.
     former: Option<Former>,
+    /// Why the groups of the last level are not those that the study lists. They may be others on the next; if they are
+    /// the same, they stay.
+    refusal: Option<BuildError>,
 }
 
 /// What was decided on one level.
@@ -41,7 +44,12 @@ struct LabelKind {
 
 impl<'a> GroupedEigenvalues<'a> {
     pub fn new(study: &'a Study, fit: ComponentFit<'a>) -> Self {
-        Self { study, fits: GroupFits::new(study, fit), former: None }
+        Self { study, fits: GroupFits::new(study, fit), former: None, refusal: None }
+    }
+
+    /// Why the last level cannot be the last word.
+    pub fn refusal(self) -> Option<BuildError> {
+        self.refusal
     }
 
     /// Groups, fits and numbers everything on the current design. `None` if the method asks for a larger one.
@@ -90,8 +98,15 @@ impl<'a> GroupedEigenvalues<'a> {
                 numbers.into_iter().zip(fits).collect()
             }
         };
+        let before = self.refusal.take();
         if let (Modes::Ranks(modes), None) = (&self.study.spectrum.modes, &ranked) {
-            numbered = self.of_listed(modes, numbered, &followed)?;
+            self.refusal = self.refuse(modes, &numbered, &followed)?;
+            if let (true, Some(refusal)) = (self.refusal == before, self.refusal.clone()) {
+                return Err(refusal);
+            }
+            // All groups go on together until it is known which of them stay.
+            let has_listed = |numbers: &Numbers| numbers.modes.iter().any(|mode| modes.contains(mode));
+            numbered.retain(|(numbers, _)| self.refusal.is_some() || has_listed(numbers));
         }
         // Modes in the order of their numbers, then real eigenvalues in that of theirs.
         numbered.sort_by_key(|(numbers, _)| {
@@ -122,28 +137,23 @@ impl<'a> GroupedEigenvalues<'a> {
         Ok(modes.iter().map(group).collect())
     }
 
-    /// The groups with listed modes, where numbers of modes are known after all groups are fitted.
-    fn of_listed(
+    /// Why a list of modes has no groups of its own, where numbers of modes are known after all groups are fitted.
+    fn refuse(
         &self,
         modes: &[usize],
-        numbered: Vec<(Numbers, GroupFit)>,
+        numbered: &[(Numbers, GroupFit)],
         followed: &Followed<'_>,
-    ) -> Result<Vec<(Numbers, GroupFit)>, BuildError> {
+    ) -> Result<Option<BuildError>, BuildError> {
         let count = numbered.iter().map(|(numbers, _)| numbers.modes.len()).sum();
         if let Some(&mode) = modes.iter().find(|&&mode| mode > count) {
             return Err(self.no_such_mode(mode, count, followed));
         }
-        let has_listed = |(numbers, _): &(Numbers, GroupFit)| numbers.modes.iter().any(|mode| modes.contains(mode));
-        let chosen: Vec<(Numbers, GroupFit)> = numbered.into_iter().filter(has_listed).collect();
-        let mut smallest: Vec<usize> = chosen.iter().flat_map(|(numbers, _)| numbers.modes.clone()).collect();
+        let groups = || numbered.iter().map(|(numbers, _)| &numbers.modes);
+        let has_listed = |group: &&Vec<usize>| group.iter().any(|mode| modes.contains(mode));
+        let mut smallest: Vec<usize> = groups().filter(has_listed).flatten().copied().collect();
         smallest.sort_unstable();
-        let split = chosen.iter().find(|(numbers, _)| numbers.modes.iter().any(|mode| !modes.contains(mode)));
-        match split {
-            Some((group, _)) => {
-                Err(BuildError::SplitGroup { listed: modes.to_vec(), group: group.modes.clone(), smallest })
-            }
-            None => Ok(chosen),
-        }
+        let split = groups().filter(has_listed).find(|group| group.iter().any(|mode| !modes.contains(mode)));
+        Ok(split.map(|group| BuildError::SplitGroup { listed: modes.to_vec(), group: group.clone(), smallest }))
     }
 
     fn no_such_mode(&self, mode: usize, count: usize, followed: &Followed<'_>) -> BuildError {

@@ -124,6 +124,9 @@ fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Obser
         match next {
             Some(next) if !stopping.holds(&results, &judgement, size) => size = next,
             _ => {
+                if let Some(refusal) = fitting.refusal() {
+                    return Err(refusal);
+                }
                 surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
                 return Ok(surrogate);
             }
@@ -148,6 +151,14 @@ impl<'a> Fitting<'a> {
             true => Self::Grouped(Box::new(GroupedEigenvalues::new(study, fit))),
             false => Self::Ranked(RankedModes::new(fit)),
         })
+    }
+
+    /// Why the last level cannot be the last word.
+    fn refusal(self) -> Option<BuildError> {
+        match self {
+            Self::Ranked(_) => None,
+            Self::Grouped(eigenvalues) => eigenvalues.refusal(),
+        }
     }
 
     fn fit(
