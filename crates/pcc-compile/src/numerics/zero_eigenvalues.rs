@@ -9,7 +9,7 @@
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{ColPivQR, DMatrix};
 
-/// Pivots up to this many roundings per row, relative to the largest, are zero.
+/// Pivots up to this many roundings per row, relative to the norm of the balanced matrix, are zero.
 const ROUNDINGS: f64 = 10.0;
 
 /// The algebraic multiplicity of the eigenvalue zero of a real square matrix, whose entries are exact but for a few
@@ -34,6 +34,8 @@ const ROUNDINGS: f64 = 10.0;
 pub fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
     let size = matrix.nrows();
     balance_parlett_reinsch(&mut matrix);
+    // What is left of the matrix has the rounding errors of the whole.
+    let zero = ROUNDINGS * size as f64 * f64::EPSILON * matrix.norm();
     loop {
         let left = matrix.nrows();
         if left == 0 {
@@ -44,7 +46,6 @@ pub fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
             let factors = ColPivQR::new(matrix.transpose());
             (factors.q(), factors.r())
         };
-        let zero = ROUNDINGS * left as f64 * f64::EPSILON * r[(0, 0)].abs();
         let rank = (0..left).take_while(|&i| r[(i, i)].abs() > zero).count();
         if rank == left {
             return size - left;
