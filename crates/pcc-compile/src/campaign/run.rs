@@ -267,8 +267,7 @@ impl<'a> Runner<'a> {
 
     /// Frequency ranks of the modes that the study asks for, as far as they oscillate.
     fn modes_of_interest(&self, eigenvalues: &[Complex<f64>]) -> Vec<usize> {
-        let count = self.spectrum(eigenvalues).map_or(0, |spectrum| spectrum.count());
-        self.study.spectrum.modes.up_to(count)
+        self.spectrum(eigenvalues).map_or(Vec::new(), |spectrum| self.study.spectrum.modes.up_to(spectrum.count()))
     }
 
     fn spectrum(&self, eigenvalues: &[Complex<f64>]) -> Result<Spectrum, SpectrumError> {
@@ -383,10 +382,11 @@ impl<'a> Runner<'a> {
         }
         let schur = SchurForm::new(state_matrix)?;
         let eigenvalues = schur.eigenvalues();
-        let reductions = self
-            .spectrum(&eigenvalues)
-            .ok()
-            .map(|spectrum| Reductions::new(&schur, &derivatives, &spectrum, self.modes_of_interest(&eigenvalues)));
+        let reduce = |spectrum: Spectrum| {
+            let modes = self.study.spectrum.modes.up_to(spectrum.count());
+            Reductions::new(&schur, &derivatives, &spectrum, modes)
+        };
+        let reductions = self.spectrum(&eigenvalues).ok().map(reduce);
         Ok(Computation { eigenvalues, reductions })
     }
 

@@ -112,8 +112,7 @@ pub(super) fn judge(
     };
     let seen: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
     let blind = blind_residuals(fitted, runs.len());
-    let honest = honest_residuals(&seen, &blind);
-    let max_re_residuals = residual_quantiles(surrogate, &honest, values, runs);
+    let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
     let unlisted = (0..runs.len()).filter(|&i| contradicts(surrogate, values, i, &runs[i])).count() as u64;
     let forgotten = unlisted as f64 / runs.len() as f64;
     if is_last && previous.is_none() && forgotten == 0.0 {

@@ -113,9 +113,8 @@ impl<'a> GroupedEigenvalues<'a> {
             (numbers.modes.first().copied().unwrap_or(usize::MAX), numbers.reals.first().copied())
         });
         drop(followed);
-        let (mut level, results) = level(samples, numbered);
-        level.is_by_modulus = has_derivatives && !kind.follow_vectors && ranked.is_none();
-        Ok(Some((level, results)))
+        let is_by_modulus = has_derivatives && !kind.follow_vectors && ranked.is_none();
+        Ok(Some(level(samples, numbered, is_by_modulus)))
     }
 
     /// The finest groups of listed modes, where frequency ranks are numbers of modes.
@@ -200,6 +199,7 @@ fn by_rank(group: &Group, ranked: &[usize]) -> Numbers {
 fn level(
     samples: crate::fitting::design::Samples,
     numbered: Vec<(Numbers, GroupFit)>,
+    is_by_modulus: bool,
 ) -> (Level, Vec<ComponentResult>) {
     let mut outputs = Vec::with_capacity(numbered.len());
     let (mut values, mut resolutions, mut results) = (Vec::new(), Vec::new(), Vec::new());
@@ -211,5 +211,5 @@ fn level(
         results.extend(fit.fits);
         gradients = gradients.zip(fit.gradients).map(|(all, own)| [all, own].concat());
     }
-    (Level { samples, outputs: with_ids(outputs), values, gradients, resolutions, is_by_modulus: false }, results)
+    (Level { samples, outputs: with_ids(outputs), values, gradients, resolutions, is_by_modulus }, results)
 }

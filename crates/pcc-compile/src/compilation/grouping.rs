@@ -165,14 +165,19 @@ impl Choice<'_, '_, '_> {
     /// The worst group with its conjugates, and with each of its nearest neighbours.
     fn trials(&self, grouping: &Grouping, worst: usize) -> Vec<(Group, Option<usize>)> {
         let (groups, group) = (&self.followed.groups, &grouping[worst]);
-        let mut others: Vec<usize> = (0..grouping.len()).filter(|&other| other != worst).collect();
-        others.retain(|&other| approach(self.followed, group, &grouping[other]));
-        let distances: Vec<f64> = grouping.iter().map(|other| distances(self.followed, group, other)[0]).collect();
-        others.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]).then(a.cmp(&b)));
+        let apart = (0..grouping.len()).filter(|&other| other != worst);
+        let distances = apart.map(|other| (other, distances(self.followed, group, &grouping[other])));
+        let mut others: Vec<(usize, f64)> = distances
+            .filter(|(_, apart)| come_closer(*apart))
+            .map(|(other, [smallest, _])| (other, smallest))
+            .collect();
+        others.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         let with_conjugates =
             Some((groups.closed(group), None)).filter(|_| !group.is_closed() && nears_the_axis(self.followed, group));
-        let with_neighbours =
-            others.into_iter().take(TRIED_NEIGHBOURS).map(|other| (groups.union(group, &grouping[other]), Some(other)));
+        let with_neighbours = others
+            .into_iter()
+            .take(TRIED_NEIGHBOURS)
+            .map(|(other, _)| (groups.union(group, &grouping[other]), Some(other)));
         with_conjugates.into_iter().chain(with_neighbours).filter(|(group, _)| group.size() <= MOST_MERGED).collect()
     }
 }
@@ -193,9 +198,8 @@ fn distances(followed: &Followed<'_>, one: &Group, other: &Group) -> [f64; 2] {
     [found.iter().copied().fold(f64::INFINITY, f64::min), found.into_iter().fold(0.0, f64::max)]
 }
 
-/// Whether two groups come much closer at some runs than at others.
-fn approach(followed: &Followed<'_>, one: &Group, other: &Group) -> bool {
-    let [smallest, largest] = distances(followed, one, other);
+/// Whether groups with these distances come much closer at some runs than at others.
+fn come_closer([smallest, largest]: [f64; 2]) -> bool {
     smallest < APPROACHING * largest
 }
 
@@ -268,8 +272,9 @@ fn connected(followed: &Followed<'_>, finest: &Grouping, may: impl Fn(&Group, &G
     let mut grouping: Grouping = Vec::with_capacity(finest.len());
     let mut parts: Vec<Vec<&Group>> = Vec::with_capacity(finest.len());
     for group in finest {
-        let approaches =
-            |part: &Vec<&Group>| part.iter().any(|other| may(group, other) && approach(followed, group, other));
+        let approaches = |part: &Vec<&Group>| {
+            part.iter().any(|other| may(group, other) && come_closer(distances(followed, group, other)))
+        };
         let (near, apart): (Vec<_>, Vec<_>) = parts.into_iter().partition(approaches);
         parts = apart;
         parts.push(near.into_iter().flatten().chain([group]).collect());

@@ -12,6 +12,7 @@ use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::OutputKind;
 use pcc_evaluate::foundation::{Interrupted, Observer};
+use pcc_evaluate::probability::statistics::Moments;
 
 /// Groups with a lower score are predicted well enough to be finite.
 const BAD: f64 = 0.05;
@@ -53,15 +54,13 @@ fn infinite_in(
         return Ok(None);
     }
     let Some(fit) = fits.trial_of_values(&reciprocals, observer)? else { return Ok(None) };
-    let residuals = fit.result.leave_one_out_residuals.as_deref().unwrap_or_default();
-    let error = rms(residuals);
-    let mean = reciprocals.iter().sum::<f64>() / reciprocals.len() as f64;
-    let spread = rms(&reciprocals.iter().map(|value| value - mean).collect::<Vec<_>>());
+    let Some(error) = fit.result.left_out_error() else { return Ok(None) };
+    let spread = Moments::of(&reciprocals).variance().sqrt();
     let is_one_sided = reciprocals.iter().all(|value| *value > 0.0) || reciprocals.iter().all(|value| *value < 0.0);
     let smallest = reciprocals.iter().map(|value| value.abs()).fold(f64::INFINITY, f64::min);
     // Of one sign at all runs, it must be known much better than it is small, to be zero at the edge.
     let needed = if is_one_sided { GOOD * smallest } else { GOOD * spread };
-    if residuals.is_empty() || error > needed {
+    if error > needed {
         return Ok(None);
     }
     let alone = Numbers { modes: Vec::new(), reals: vec![1] };
@@ -71,8 +70,4 @@ fn infinite_in(
     let zero = if is_one_sided { error } else { error.max(ZERO * spread) };
     let is_zero = |at: &usize| predicted[*at].abs() <= zero;
     Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

@@ -97,12 +97,8 @@ fn meets_the_axis(study: &Study, fit: &GroupFit, observer: &dyn Observer) -> Res
     let [e_1, e_2] = &block.components[..] else {
         return Ok(block.eigenvalues.iter().flatten().any(|lambda| lambda.im == 0.0));
     };
-    let residual = rms(fit.fits[1].result.leave_one_out_residuals.as_deref().unwrap_or_default());
+    let residual = fit.fits[1].result.left_out_error().unwrap_or(0.0);
     Ok(e_1.iter().zip(e_2).any(|(e_1, e_2)| e_2 - 0.25 * e_1 * e_1 < RESIDUALS * residual))
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
 /// Pairs of single modes that are neighbours in frequency, come closer at some runs than at others, and are not
@@ -144,14 +140,8 @@ fn closes(
         .map(|run| (followed.eigenvalue(run, a) - followed.eigenvalue(run, b)).norm())
         .fold(0.0, f64::max);
     // The components of a pair are Re s, Im s, Re c₀, Im c₀ with c₀ = −d.
-    let residual: f64 = fit.fits[2..]
-        .iter()
-        .map(|one| {
-            let left_out = one.result.leave_one_out_residuals.as_deref().unwrap_or_default();
-            left_out.iter().map(|rest| rest * rest).sum::<f64>() / left_out.len().max(1) as f64
-        })
-        .sum::<f64>()
-        .sqrt();
+    let error = |at: usize| fit.fits[at].result.left_out_error().unwrap_or(0.0);
+    let residual = error(2).hypot(error(3));
     let near = (0.5 * CLOSE * largest).powi(2).max(RESIDUALS * residual);
     let surrogate = super::record::of_fits(study, &fit.output, &fit.fits);
     let block = at_judged_points(&surrogate, observer)?;

@@ -59,6 +59,13 @@ pub struct Fitted {
 }
 
 impl Fitted {
+    /// The root mean square of the residuals at runs left out, in the unit of the component; `None` if they are not
+    /// determined.
+    pub fn left_out_error(&self) -> Option<f64> {
+        let residuals = self.leave_one_out_residuals.as_ref()?;
+        Some((residuals.iter().map(|rest| rest * rest).sum::<f64>() / residuals.len() as f64).sqrt())
+    }
+
     /// A least-squares fit.
     fn new(basis: &ActiveBasis<'_>, degree: u16, stop: StopReason) -> Result<Self, Interrupted> {
         let mut terms: Vec<(MultiIndex, f64)> = basis.indices().iter().cloned().zip(basis.coefficients()).collect();
