@@ -203,7 +203,8 @@ impl FitReport {
                 format!(", and the proportion may be off by {} % of itself", significant(100.0 * error, 2))
             });
             warnings.push(format!(
-                "in {unlisted} of {} model runs an eigenvalue that the surrogate does not hold decides whether the system is stable{error}; \
+                "in {unlisted} of {} model runs an eigenvalue that the surrogate does not hold decides whether the \
+                 system is stable{error}; \
                  target = \"invariants\" without spectrum.modes holds all eigenvalues",
                 counts.final_mesh
             ));
@@ -218,16 +219,16 @@ impl FitReport {
         }
         if setting("labels").is_some() {
             warnings.push(
-                "eigenvalues could not be followed by their vectors in every run; they are told apart by |λ|, and those that change \
-                 places are fitted together"
+                "eigenvalues could not be followed by their vectors in every run; they are told apart by |λ|, and those \
+                 that change places are fitted together"
                     .to_owned(),
             );
         }
         warnings.extend(Self::distrusted(surrogate));
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if unlisted.is_none() && error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
-                "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; else raise design.maximum or choose another fit.method, and check \
-                 with pcc compare or certify",
+                "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; \
+                 else raise design.maximum or choose another fit.method, and check with pcc compare or certify",
                 significant(100.0 * error, 2)
             )),
             (None, Some(_)) => warnings.push(

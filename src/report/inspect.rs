@@ -243,7 +243,7 @@ impl InspectReport {
             ("content id", self.content_id.clone()),
         ];
         if self.rigid_body_modes > 0 {
-            let motion = format!("{} eigenvalues, zero everywhere and left out", self.rigid_body_modes);
+            let motion = format!("{} eigenvalues, negligible everywhere and left out", self.rigid_body_modes);
             facts.insert(6, ("rigid body", motion));
         }
         if self.elements > 1 {
