@@ -90,7 +90,7 @@ impl SchurForm {
     /// # Ok::<(), pcc_compile::numerics::eigenvalues::EigenvalueError>(())
     /// ```
     pub fn subspace(&self, positions: &[usize]) -> Subspace {
-        let (triangular, basis) = complex_form(self);
+        let (triangular, basis) = triangular_form(self, self.basis().clone());
         let Subspace { right, left, restricted, amplification } = Subspace::of_triangular(triangular, positions);
         let (mut right, mut left) = (&basis * right, left * basis.adjoint());
         for (i, &factor) in self.balance().iter().enumerate() {
@@ -101,10 +101,14 @@ impl SchurForm {
     }
 }
 
-/// T and Q with the 2 × 2 blocks of T made triangular; the eigenvalue with positive imaginary part comes first.
-fn complex_form(schur: &SchurForm) -> (DMatrix<Complex<f64>>, DMatrix<Complex<f64>>) {
+/// T with its 2 × 2 blocks made triangular, and `basis` turned with it; the eigenvalue with positive imaginary part
+/// comes first.
+pub(super) fn triangular_form(
+    schur: &SchurForm,
+    basis: DMatrix<f64>,
+) -> (DMatrix<Complex<f64>>, DMatrix<Complex<f64>>) {
     let to_complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex::new(entry, 0.0));
-    let (mut triangular, mut basis) = (to_complex(schur.triangular()), to_complex(schur.basis()));
+    let (mut triangular, mut basis) = (to_complex(schur.triangular()), to_complex(&basis));
     let lambdas = schur.eigenvalues();
     for i in 1..triangular.nrows() {
         if schur.triangular()[(i, i - 1)] != 0.0 {
