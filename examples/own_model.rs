@@ -47,8 +47,8 @@ impl Model for Belt {
         let zero = || dmatrix![0.0, 0.0; 0.0, 0.0];
         let by = |stiffness| SecondOrder { mass: zero(), damping: zero(), stiffness };
         // By μ and by k, in the order of the study's inputs.
-        let derivatives = [by(dmatrix![0.0, -40.0; 40.0, 0.0]), by(dmatrix![1.0, 0.0; 0.0, 1.0])];
-        self.matrices(point[0], point[1]).linearization(&derivatives).map(Some)
+        let derivatives = vec![by(dmatrix![0.0, -40.0; 40.0, 0.0]), by(dmatrix![1.0, 0.0; 0.0, 1.0])];
+        self.matrices(point[0], point[1]).linearization(derivatives).map(Some)
     }
 }
 

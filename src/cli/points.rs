@@ -1,7 +1,7 @@
 //! Points from a CSV file, results to another.
 
 use num_complex::Complex;
-use pcc_evaluate::components::{Label, Verdict};
+use pcc_evaluate::components::{Label, Top, Verdict};
 use pcc_evaluate::foundation::{Observer, save_with};
 use pcc_evaluate::probability::inputs::{InputError, InputSpace};
 use serde::Serialize;
@@ -66,8 +66,8 @@ impl fmt::Display for PointsReport {
 pub(super) struct Evaluated {
     /// Names of the eigenvalues.
     pub labels: Vec<Label>,
-    /// Per point, the eigenvalues by label, and that with the largest Re λ.
-    pub results: Vec<(Vec<Complex<f64>>, Complex<f64>)>,
+    /// Per point, the eigenvalues by label, and what decides.
+    pub results: Vec<(Vec<Complex<f64>>, Top)>,
 }
 
 /// A CSV file with one column per input.
@@ -164,7 +164,7 @@ impl<'a> PointsFile<'a> {
                 for (point, (eigenvalues, top)) in points.iter().zip(&found.results) {
                     let cells = order.iter().flat_map(|&at| cells(found.labels[at], eigenvalues[at]));
                     write_row(&mut writer, point.iter().copied().chain(cells), *top)?;
-                    stable += u64::from(top.re < 0.0);
+                    stable += u64::from(top.verdict() == Verdict::Stable);
                 }
                 rows += points.len() as u64;
             }
@@ -191,7 +191,7 @@ impl<'a> PointsFile<'a> {
             return if rows_before == 0 { Err(in_file(PointsError::Empty).into()) } else { Ok(None) };
         }
         let found = evaluate(&points)?;
-        match found.results.iter().position(|(_, top)| !top.re.is_finite()) {
+        match found.results.iter().position(|(_, top)| !top.max_re.is_finite()) {
             Some(at) => Err(in_file(PointsError::NotFinite { row: rows_before + 1 + at as u64 }).into()),
             None => Ok(Some((points, found))),
         }
@@ -247,15 +247,11 @@ fn cells(label: Label, lambda: Complex<f64>) -> impl Iterator<Item = f64> {
 }
 
 /// Numbers by their shortest exact decimals.
-fn write_row<W: Write>(
-    writer: &mut csv::Writer<W>,
-    numbers: impl Iterator<Item = f64>,
-    top: Complex<f64>,
-) -> csv::Result<()> {
-    for value in numbers.chain([top.re]) {
+fn write_row<W: Write>(writer: &mut csv::Writer<W>, numbers: impl Iterator<Item = f64>, top: Top) -> csv::Result<()> {
+    for value in numbers.chain([top.max_re]) {
         writer.write_field(format!("{value:?}"))?;
     }
-    let verdict = Verdict::of(top);
+    let verdict = top.verdict();
     writer.write_field(if verdict == Verdict::Stable { "1" } else { "0" })?;
     writer.write_field(verdict.name())?;
     writer.write_record(None::<&[u8]>)

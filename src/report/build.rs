@@ -43,6 +43,10 @@ pub struct BuildReport {
     pub final_mesh_computations: u64,
     /// Number of points of each design level.
     pub levels: Vec<u64>,
+    /// Number of eigenvalues that are rigid-body motion, zero at every run, and left out.
+    pub rigid_body_modes: usize,
+    /// Whether no mode decays but what grows elsewhere.
+    pub undamped: bool,
     /// Fit of every component.
     pub components: Vec<FitReport>,
     /// What to know before trusting the surrogate.
@@ -210,9 +214,12 @@ impl FitReport {
             ));
         }
         if setting("derivatives").is_some() && counts.gradients < counts.values {
+            let close = match setting("without_derivatives") {
+                Some(Setting { value: SettingValue::Text(names), .. }) => names.as_str(),
+                _ => "a group of modes",
+            };
             warnings.push(format!(
-                "in {} of {} model runs a group of modes was too close to other modes for derivatives; its values alone entered the \
-                 fit there",
+                "in {} of {} model runs {close} came too close to other modes for derivatives; values alone entered the fit there",
                 counts.values - counts.gradients,
                 counts.values
             ));
@@ -296,7 +303,10 @@ impl BuildReport {
             reused: built.reused,
             failed: built.failures.iter().map(|failure| FailedRun::new(&study.inputs, failure)).collect(),
         };
-        Self::new(&built.surrogate, file, built.bytes, built.elapsed_seconds, runs)
+        Self {
+            rigid_body_modes: built.rigid_body_modes,
+            ..Self::new(&built.surrogate, file, built.bytes, built.elapsed_seconds, runs)
+        }
     }
 
     fn new(surrogate: &Surrogate, file: String, bytes: u64, elapsed_seconds: f64, runs: RecordedRuns) -> Self {
@@ -310,6 +320,8 @@ impl BuildReport {
             elements: surrogate.mesh.elements().len(),
             final_mesh_computations: surrogate.training.counts.final_mesh,
             levels: surrogate.training.levels.clone(),
+            rigid_body_modes: surrogate.verdict.rigid_body_modes,
+            undamped: surrogate.is_undamped(),
             warnings: runs.warning().into_iter().chain(FitReport::warnings_of(surrogate)).collect(),
             runs,
             components: FitReport::of(surrogate),
@@ -359,6 +371,12 @@ impl fmt::Display for BuildReport {
             self.elapsed_seconds,
             self.seed
         )?;
+        if self.undamped {
+            writeln!(f, "The system is undamped: nothing decays.\n")?;
+        }
+        if self.rigid_body_modes > 0 {
+            writeln!(f, "{} eigenvalues are rigid-body motion: zero, and left out.\n", self.rigid_body_modes)?;
+        }
         writeln!(f, "{}", FitReport::table(&self.components))?;
         self.warnings.iter().try_for_each(|warning| writeln!(f, "warning: {warning}"))?;
         writeln!(f, "written to {} ({} bytes)", self.file, count(self.bytes))

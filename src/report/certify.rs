@@ -2,7 +2,7 @@
 
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::DiscordantCounts;
-use pcc_evaluate::surrogate::{Certificate, Surrogate};
+use pcc_evaluate::surrogate::{Certificate, MarginalBounds, Surrogate};
 use serde::Serialize;
 use std::fmt;
 
@@ -81,6 +81,10 @@ impl fmt::Display for CertifyReport {
             writeln!(f, "warning: these runs contradict the surrogate: its own share lies outside the bound\n")?;
         }
         writeln!(f, "  verified bound         {:.3} % to {:.3} % stable", 100.0 * new.lower, 100.0 * new.upper)?;
+        if let Some(MarginalBounds { marginal, unstable, .. }) = new.marginal {
+            let range = |[lower, upper]: [f64; 2]| format!("{:.3} % to {:.3} %", 100.0 * lower, 100.0 * upper);
+            writeln!(f, "                         {} marginal, {} unstable", range(marginal), range(unstable))?;
+        }
         writeln!(f, "  level                  {}, whatever the surrogate", new.level)?;
         if !same_problem {
             writeln!(f, "  of another problem     than the surrogate was built for: eval does not show this bound")?;

@@ -4,7 +4,6 @@ use super::survey::LEVEL;
 use super::table::{Align, Table, significant};
 use pcc_compile::reference::Comparison;
 use pcc_evaluate::foundation::count;
-use pcc_evaluate::probability::statistics::DiscordantCounts;
 use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
@@ -36,10 +35,22 @@ pub struct CompareReport {
     pub relative_error_percent: Option<f64>,
     /// Points on whose stability the two disagree.
     pub misclassified_percent: f64,
-    /// Points that the surrogate calls stable and the model unstable.
+    /// The model's share of marginal points.
+    pub marginal_model: f64,
+    /// The surrogate's share of marginal points.
+    pub marginal_surrogate: f64,
+    /// The model's share of unstable points.
+    pub unstable_model: f64,
+    /// The surrogate's share of unstable points.
+    pub unstable_surrogate: f64,
+    /// Points that the surrogate calls stable and the model does not.
     pub falsely_stable: u64,
-    /// Points that the surrogate calls unstable and the model stable.
+    /// Points that the surrogate calls marginal and the model does not.
+    pub falsely_marginal: u64,
+    /// Points that the surrogate calls unstable and the model does not.
     pub falsely_unstable: u64,
+    /// Number of eigenvalues of the model that are rigid-body motion, and left out.
+    pub rigid_body_modes: usize,
     /// Largest error of the mean of Re λ among the modes: the paper's mean error.
     pub largest_mean_error_percent: Option<f64>,
     /// Largest error of the variance of Re λ among the modes: the paper's variance error.
@@ -99,8 +110,14 @@ impl CompareReport {
             contradicts_surrogate: contradicts(surrogate, comparison),
             relative_error_percent: comparison.relative_error_percent(),
             misclassified_percent: comparison.misclassified_percent(),
-            falsely_stable: comparison.falsely_stable,
-            falsely_unstable: comparison.falsely_unstable,
+            marginal_model: comparison.marginal()[0],
+            marginal_surrogate: comparison.marginal()[1],
+            unstable_model: comparison.unstable()[0],
+            unstable_surrogate: comparison.unstable()[1],
+            falsely_stable: comparison.falsely_stable(),
+            falsely_marginal: comparison.falsely_marginal(),
+            falsely_unstable: comparison.falsely_unstable(),
+            rigid_body_modes: comparison.rigid_body_modes,
             largest_mean_error_percent: largest(|component| component.mean_error_percent),
             largest_variance_error_percent: largest(|component| component.variance_error_percent),
             components,
@@ -111,11 +128,12 @@ impl CompareReport {
 
 /// Whether the model's share differs from the surrogate's by more than a few times its estimated error, at 95 %.
 fn contradicts(surrogate: &Surrogate, comparison: &Comparison) -> bool {
-    let &Comparison { samples, falsely_stable, falsely_unstable, .. } = comparison;
-    let [lower, upper] = DiscordantCounts { samples, falsely_stable, falsely_unstable }.difference(LEVEL);
+    let [lower, upper] = comparison.verdicts.of_unstable().difference(LEVEL);
     // A surrogate that says nothing of its error is not contradicted.
     let Some(relative) = surrogate.decision.proportion_error else { return false };
-    let stated = SEVERAL * (relative * comparison.proportion_surrogate()).max(SMALLEST_ERROR / 100.0);
+    // What it says its error of is the share that is not unstable.
+    let share = 1.0 - comparison.unstable()[1];
+    let stated = SEVERAL * (relative * share).max(SMALLEST_ERROR / 100.0);
     lower > stated || upper < -stated
 }
 
@@ -145,11 +163,24 @@ impl fmt::Display for CompareReport {
         writeln!(f, "  stable, model          {}", percent(self.proportion_model))?;
         writeln!(f, "  stable, surrogate      {}", percent(self.proportion_surrogate))?;
         writeln!(f, "  relative error         {} %", percentage(self.relative_error_percent))?;
+        if self.marginal_model + self.marginal_surrogate > 0.0 {
+            let shares =
+                |model, surrogate| format!("{} by the model, {} by the surrogate", percent(model), percent(surrogate));
+            writeln!(f, "  marginal               {}", shares(self.marginal_model, self.marginal_surrogate))?;
+            writeln!(f, "  unstable               {}", shares(self.unstable_model, self.unstable_surrogate))?;
+        }
+        if self.rigid_body_modes > 0 {
+            writeln!(f, "  rigid body             {} eigenvalues are zero, and left out", self.rigid_body_modes)?;
+        }
         writeln!(
             f,
-            "  misclassified          {} %   {} falsely stable, {} falsely unstable",
+            "  misclassified          {} %   {} falsely stable{}, {} falsely unstable",
             significant(self.misclassified_percent, 3),
             count(self.falsely_stable),
+            match self.falsely_marginal {
+                0 => String::new(),
+                marginal => format!(", {} falsely marginal", count(marginal)),
+            },
             count(self.falsely_unstable)
         )?;
         writeln!(

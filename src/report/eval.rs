@@ -2,9 +2,11 @@
 
 use super::build::FitReport;
 use super::confidence::Confidence;
+use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
-use pcc_evaluate::components::{EigenvalueSummary, Label, Output, Summary};
+use pcc_compile::reference::Reference;
+use pcc_evaluate::components::{EigenvalueSummary, Label, Margin, Output, Summary};
 use pcc_evaluate::evaluation::{Condition, Question, Sampler};
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Moments, Proportion, Share};
@@ -38,6 +40,8 @@ pub struct EvalReport {
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
+    /// Share of marginal samples: they are neither stable nor unstable as far as can be told.
+    pub marginal_proportion: f64,
     /// Share of unstable samples.
     pub unstable_proportion: f64,
     /// Share of samples that are unstable and whose eigenvalue with the largest Re λ oscillates.
@@ -48,6 +52,14 @@ pub struct EvalReport {
     pub intervals: Intervals,
     /// What stability is judged by.
     pub judged_by: String,
+    /// Whether no mode decays but what grows elsewhere.
+    pub undamped: bool,
+    /// Number of eigenvalues that are rigid-body motion; null if the file does not say.
+    pub rigid_body_modes: Option<usize>,
+    /// How far eigenvalues must stay from instability; null if only the sign of Re λ counts.
+    pub margin: Option<MarginReport>,
+    /// The band of frequencies that chose the modes, and what lies outside; null if it was none.
+    pub band: Option<String>,
     /// Standard error of the share: from the spread of replicates, or of independent samples.
     pub standard_error: f64,
     /// How sure that is.
@@ -113,6 +125,8 @@ pub struct Statistics {
 pub struct Intervals {
     /// Of stable samples.
     pub stable: Interval,
+    /// Of marginal ones.
+    pub marginal: Interval,
     /// Of unstable ones.
     pub unstable: Interval,
     /// Of those that flutter.
@@ -132,11 +146,13 @@ pub struct ModeReport {
     pub growth_rate: Statistics,
     /// −Re λ/|λ|.
     pub damping_ratio: Statistics,
-    /// Share of samples in which this mode is unstable, Re λ ≥ 0.
+    /// Share of samples in which this mode is unstable.
     pub unstable_share: f64,
+    /// Share of samples in which it is marginal.
+    pub marginal_share: f64,
     /// Share of samples in which it oscillates.
     pub oscillating_share: f64,
-    /// Share of samples in which its two eigenvalues are real and stable.
+    /// Share of samples in which its two eigenvalues are real and it does not diverge.
     pub overdamped_share: f64,
     /// Share of samples in which it oscillates and is unstable.
     pub flutter_share: f64,
@@ -214,6 +230,11 @@ impl EvalReport {
         }
         let (stable, share) = (summary.stable_proportion(), cell.share(LEVEL, |tally| tally.summary.stable));
         report.complete = found.is_complete;
+        report.judged_by = judged_by(surrogate);
+        report.undamped = surrogate.is_undamped();
+        report.rigid_body_modes = rigid_body_modes(surrogate);
+        report.margin = MarginReport::of(surrogate.verdict.margin);
+        report.band = outside_band(surrogate);
         report.sampler = question.sampler.name();
         report.requested_samples = question.samples;
         report.replicates = cell.replicates.len().max(1) as u32;
@@ -228,7 +249,8 @@ impl EvalReport {
         let interval = |hits: fn(&Summary) -> u64| cell.share(LEVEL, |tally| hits(&tally.summary)).interval;
         report.intervals = Intervals {
             stable: share.interval,
-            unstable: interval(Summary::unstable),
+            marginal: interval(Summary::marginal),
+            unstable: interval(|summary| summary.unstable),
             flutter: interval(Summary::fluttering),
             divergence: interval(|summary| summary.divergent),
         };
@@ -258,9 +280,16 @@ impl EvalReport {
         Some(report)
     }
 
-    /// The report of direct computations.
-    pub fn of_model(study: &str, outputs: &[Output], summary: &Summary, seed: u64, elapsed_seconds: f64) -> Self {
-        Self::new(study, "model", outputs, summary, seed, elapsed_seconds)
+    /// The report of direct computations that are judged with this margin.
+    pub fn of_model(study: &str, reference: &Reference, margin: Margin, seed: u64, elapsed_seconds: f64) -> Self {
+        let Reference { outputs, summary, rigid_body_modes, is_undamped } = reference;
+        Self {
+            judged_by: with_margin("all eigenvalues".to_owned(), margin),
+            undamped: *is_undamped,
+            rigid_body_modes: Some(*rigid_body_modes),
+            margin: MarginReport::of(margin),
+            ..Self::new(study, "model", outputs, summary, seed, elapsed_seconds)
+        }
     }
 
     fn new(
@@ -276,7 +305,8 @@ impl EvalReport {
             outputs.iter().flat_map(Output::labels).zip(&summary.eigenvalues).collect();
         let proportion = |hits: u64| Proportion { hits, samples: stable.samples };
         let wilson = |hits: u64| proportion(hits).wilson(LEVEL);
-        let (unstable, flutter, divergence) = (summary.unstable(), summary.fluttering(), summary.divergent);
+        let (marginal, unstable) = (summary.marginal(), summary.unstable);
+        let (flutter, divergence) = (summary.fluttering(), summary.divergent);
         let mut names: Vec<_> = outputs.iter().flat_map(|output| &output.components).collect();
         names.sort_by_key(|component| component.id);
         Self {
@@ -291,19 +321,22 @@ impl EvalReport {
             conditions: Vec::new(),
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
+            marginal_proportion: proportion(marginal).value(),
             unstable_proportion: proportion(unstable).value(),
             flutter_proportion: proportion(flutter).value(),
             divergence_proportion: proportion(divergence).value(),
             intervals: Intervals {
                 stable: stable.wilson(LEVEL),
+                marginal: wilson(marginal),
                 unstable: wilson(unstable),
                 flutter: wilson(flutter),
                 divergence: wilson(divergence),
             },
-            judged_by: match source {
-                "model" => "all eigenvalues".to_owned(),
-                _ => judged_by(labelled.iter().map(|(label, _)| *label)),
-            },
+            judged_by: String::new(),
+            undamped: false,
+            rigid_body_modes: None,
+            margin: None,
+            band: None,
             standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
             confidence: Confidence::of_model(stable),
             max_re: Statistics::of(&summary.max_re, 1.0),
@@ -350,13 +383,14 @@ impl Statistics {
 fn modes(labelled: &[(Label, &EigenvalueSummary)], samples: u64) -> Vec<ModeReport> {
     let share = |count: u64| count as f64 / samples as f64;
     let report = |(label, summary): &(Label, &EigenvalueSummary)| {
-        let EigenvalueSummary { unstable, real, divergent, .. } = **summary;
+        let EigenvalueSummary { unstable, marginal, real, divergent, .. } = **summary;
         Some(ModeReport {
             mode: label.mode()?,
             frequency_hz: Statistics::of(&summary.angular_frequency, 1.0 / TAU),
             growth_rate: Statistics::of(&summary.growth_rate, 1.0),
             damping_ratio: Statistics::of(&summary.damping_ratio, 1.0),
             unstable_share: share(unstable),
+            marginal_share: share(marginal),
             oscillating_share: share(samples - real),
             overdamped_share: share(real - divergent),
             flutter_share: share(unstable - divergent),
@@ -374,15 +408,6 @@ fn real_eigenvalues(labelled: &[(Label, &EigenvalueSummary)], samples: u64) -> V
         divergence_share: summary.unstable as f64 / samples as f64,
     };
     reals.map(report).collect()
-}
-
-/// The eigenvalues that a surrogate carries, in words.
-pub(super) fn judged_by(labels: impl Iterator<Item = Label>) -> String {
-    let labels: Vec<Label> = labels.collect();
-    let modes: Vec<String> = labels.iter().filter_map(|label| label.mode()).map(|mode| mode.to_string()).collect();
-    let reals = labels.iter().filter(|label| matches!(label, Label::Real(_))).map(|label| label.growth_rate());
-    let modes = (!modes.is_empty()).then(|| format!("modes {}", modes.join(", ")));
-    modes.into_iter().chain(reals).collect::<Vec<_>>().join(", ")
 }
 
 fn analyses(surrogate: &Surrogate) -> Vec<Analysis> {

@@ -40,8 +40,20 @@ impl EvalReport {
     /// The answer in a sentence or two.
     pub(super) fn headline(&self) -> String {
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-        let stable = format!("Stable in {} of cases.", percent(self.stable_proportion));
-        match self.can_diverge() {
+        let marginal = match self.marginal_proportion > 0.0 {
+            true => format!(" Marginal in {}: neither growing nor decaying.", percent(self.marginal_proportion)),
+            false => String::new(),
+        };
+        if self.undamped {
+            return format!(
+                "Undamped: nothing decays.{marginal} Flutter in {}, divergence in {}.",
+                percent(self.flutter_proportion),
+                percent(self.divergence_proportion)
+            );
+        }
+        let beyond = if self.margin.is_some() { " with the margin asked for" } else { "" };
+        let stable = format!("Stable{beyond} in {} of cases.{marginal}", percent(self.stable_proportion));
+        match self.can_diverge() || !marginal.is_empty() {
             true => format!(
                 "{stable} Flutter in {}, divergence in {}.",
                 percent(self.flutter_proportion),
@@ -56,16 +68,32 @@ impl fmt::Display for EvalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let how = pace(self.samples as f64, self.elapsed_seconds, self.only_in_text.merged_parts);
         let (study, samples) = (&self.study, count(self.samples));
-        writeln!(f, "{study}: {samples} samples of the {} {how}, seed {}\n", self.source, self.seed)?;
+        let of = if self.undamped { " of an undamped system" } else { "" };
+        writeln!(f, "{study}: {samples} samples of the {}{of} {how}, seed {}\n", self.source, self.seed)?;
         let first = usize::from(self.only_in_text.is_contradicted);
         self.warnings[..first].iter().try_for_each(|warning| writeln!(f, "warning: {warning}\n"))?;
         self.write_circumstances(f)?;
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         writeln!(f, "  stable                 {}   judged by {}", percent(self.stable_proportion), self.judged_by)?;
-        if self.can_diverge() {
+        if self.marginal_proportion > 0.0 || self.undamped {
+            let marginal = percent(self.marginal_proportion);
+            writeln!(f, "  marginal               {marginal}   neither grows nor decays, as far as can be told")?;
+        }
+        if self.can_diverge() || self.marginal_proportion > 0.0 || self.undamped {
             let [unstable, flutter, divergence] =
                 [self.unstable_proportion, self.flutter_proportion, self.divergence_proportion].map(percent);
             writeln!(f, "  unstable               {unstable}   flutter {flutter}, divergence {divergence}")?;
+            if self.marginal_proportion > 0.0 {
+                let Interval { lower, upper, level } = self.intervals.unstable;
+                let range = format!("{} to {}", percent(lower), percent(upper));
+                writeln!(f, "                         {range}   {:.0} %, from {samples} samples", 100.0 * level)?;
+            }
+        }
+        if let Some(count) = self.rigid_body_modes.filter(|&count| count > 0) {
+            writeln!(f, "  rigid body             {count} eigenvalues are zero, and left out")?;
+        }
+        if let Some(band) = &self.band {
+            writeln!(f, "  frequencies            {band}")?;
         }
         match self.source {
             "model" => {

@@ -3,7 +3,7 @@
 use super::build::{FitReport, level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::confidence::{error_text, is_of_modes_left_out};
-use super::eval::judged_by;
+use super::judgement::{MarginReport, judged_by, outside_band};
 use super::table::{Align, Table, significant};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
@@ -63,6 +63,14 @@ pub struct InspectReport {
     pub judged_by: String,
     /// Number of eigenvalues of the model that are rigid-body motion, which takes no part in stability.
     pub rigid_body_modes: usize,
+    /// Whether no mode decays but what grows elsewhere.
+    pub undamped: bool,
+    /// How far eigenvalues must stay from instability; null if only the sign of Re λ counts.
+    pub margin: Option<MarginReport>,
+    /// Growth rates up to this, in 1/s, are taken for zero.
+    pub tolerance: f64,
+    /// The band of frequencies that chose the modes, and what lies outside; null if it was none.
+    pub band: Option<String>,
     /// The uncertain inputs.
     pub inputs: Vec<InputReport>,
     /// Fit of every component.
@@ -138,8 +146,12 @@ impl InspectReport {
             levels: surrogate.training.levels.clone(),
             seed: surrogate.training.seed,
             modes: surrogate.modes(),
-            judged_by: judged_by(surrogate.labels().into_iter()),
+            judged_by: judged_by(surrogate),
             rigid_body_modes: surrogate.verdict.rigid_body_modes,
+            undamped: surrogate.is_undamped(),
+            margin: MarginReport::of(surrogate.verdict.margin),
+            tolerance: surrogate.verdict.tolerance,
+            band: outside_band(surrogate),
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
@@ -242,6 +254,12 @@ impl InspectReport {
             ("problem hash", self.problem_hash.clone()),
             ("content id", self.content_id.clone()),
         ];
+        if let Some(band) = &self.band {
+            facts.insert(6, ("frequencies", band.clone()));
+        }
+        if self.undamped {
+            facts.insert(6, ("damping", "none: nothing decays".to_owned()));
+        }
         if self.rigid_body_modes > 0 {
             let motion = format!("{} eigenvalues, negligible everywhere and left out", self.rigid_body_modes);
             facts.insert(6, ("rigid body", motion));

@@ -9,6 +9,7 @@ mod confidence;
 mod eval;
 mod eval_text;
 mod inspect;
+mod judgement;
 mod page;
 mod paper_charts;
 mod part;

@@ -1,8 +1,9 @@
 //! The stability proportion along one input, or over two.
 
 use super::charts::short;
-use super::eval::{QuantileReport, judged_by};
+use super::eval::QuantileReport;
 use super::eval_text::pace;
+use super::judgement::judged_by;
 use super::survey::{EventReport, LEVEL, conditions_text, events};
 use super::table::{Align, Table, plain, significant};
 use pcc_charts::{Axis, Cells, Chart, Color, Marks, Series, Symbol, sheet};
@@ -73,7 +74,9 @@ pub struct SweepPoint {
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
-    /// Share of the samples that flutter: the eigenvalue with the largest Re λ is complex.
+    /// Share of the samples that are marginal: neither stable nor unstable as far as can be told.
+    pub marginal_proportion: f64,
+    /// Share of the samples that flutter: the eigenvalue that decides is complex.
     pub flutter_proportion: f64,
     /// Share of the samples that diverge: it is real.
     pub divergence_proportion: f64,
@@ -102,7 +105,8 @@ impl SweepReport {
             let summary = &cell.total.summary;
             let proportion = |hits: u64| hits as f64 / summary.samples().max(1) as f64;
             SweepPoint {
-                flutter_proportion: proportion(summary.unstable() - summary.divergent),
+                marginal_proportion: proportion(summary.marginal()),
+                flutter_proportion: proportion(summary.fluttering()),
                 divergence_proportion: proportion(summary.divergent),
                 values: values(&question.sweeps, number),
                 stable_samples: summary.stable,
@@ -118,7 +122,7 @@ impl SweepReport {
             source: "surrogate",
             complete: found.is_complete,
             modes: surrogate.modes(),
-            judged_by: judged_by(surrogate.labels().into_iter()),
+            judged_by: judged_by(surrogate),
             can_diverge: surrogate.has_real_eigenvalues(),
             samples: question.samples,
             seed: question.seed,
@@ -134,9 +138,14 @@ impl SweepReport {
         }
     }
 
+    /// Whether samples of some point are neither stable nor unstable.
+    fn has_marginal(&self) -> bool {
+        self.points.iter().any(|point| point.marginal_proportion > 0.0)
+    }
+
     /// The points as CSV: values of the swept inputs, bounds of those that are confined, samples, stable samples,
-    /// stable proportion, its interval, the band of the surrogate, where systems can diverge the shares of flutter and
-    /// divergence, the share of each event.
+    /// stable proportion, its interval, the band of the surrogate, the share of marginal samples where there are some,
+    /// where systems can diverge the shares of flutter and divergence, the share of each event.
     ///
     /// # Errors
     ///
@@ -148,6 +157,8 @@ impl SweepReport {
         header.extend(self.conditions.iter().flat_map(bounds));
         let columns = ["samples", "stable_samples", "stable_proportion", "lower", "upper", "band_lower", "band_upper"];
         header.extend(columns.map(str::to_owned));
+        let has_marginal = self.has_marginal();
+        header.extend(has_marginal.then(|| "marginal_proportion".to_owned()));
         if self.can_diverge {
             header.extend(["flutter_proportion", "divergence_proportion"].map(str::to_owned));
         }
@@ -163,6 +174,7 @@ impl SweepReport {
             row.extend([point.stable_proportion, lower, upper].map(|share| share.to_string()));
             let band = point.surrogate_band.map_or([None; 2], |band| [Some(band.lower), Some(band.upper)]);
             row.extend(band.map(|share| share.map_or(String::new(), |share| share.to_string())));
+            row.extend(has_marginal.then(|| point.marginal_proportion.to_string()));
             if self.can_diverge {
                 row.extend([point.flutter_proportion, point.divergence_proportion].map(|share| share.to_string()));
             }
@@ -244,6 +256,8 @@ impl SweepReport {
         let right = Align::Right;
         let mut columns: Vec<(&str, Align)> = self.sweeps.iter().map(|sweep| (sweep.input.as_str(), right)).collect();
         columns.extend([("stable", right), ("from", right), ("to", right)]);
+        let has_marginal = self.has_marginal();
+        columns.extend(has_marginal.then_some(("marginal", right)));
         if self.can_diverge {
             columns.extend([("flutter", right), ("divergence", right)]);
         }
@@ -254,6 +268,7 @@ impl SweepReport {
         for point in &self.points {
             let mut row: Vec<String> = point.values.iter().map(|&value| plain(value)).collect();
             row.extend([point.stable_proportion, point.interval.lower, point.interval.upper].map(percent));
+            row.extend(has_marginal.then(|| percent(point.marginal_proportion)));
             if self.can_diverge {
                 row.extend([point.flutter_proportion, point.divergence_proportion].map(percent));
             }
@@ -340,7 +355,10 @@ fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
         Series::new("95 % interval", Color::Gray, line(|point| point.interval.upper)),
         Series::new("stable", Color::Blue, line(|point| point.stable_proportion)),
     ];
-    if report.can_diverge {
+    if report.has_marginal() {
+        series.push(Series::new("marginal", Color::Purple, line(|point| point.marginal_proportion)));
+    }
+    if report.can_diverge || report.has_marginal() {
         series.push(Series::new("flutter", Color::Red, line(|point| point.flutter_proportion)));
         series.push(Series::new("divergence", Color::Green, line(|point| point.divergence_proportion)));
     }

@@ -3,8 +3,7 @@
 
 use crate::support::text;
 use nalgebra::{Complex, DMatrix};
-use pcc_compile::mechanics::spectrum::{ReducedSystem, Spectrum, components_of, nearest};
-use pcc_compile::numerics::eigenvalues::SchurForm;
+use pcc_compile::mechanics::spectrum::{ReducedSystem, Slopes, Solution, Spectrum, components_of, nearest};
 use pcc_evaluate::components::{OutputKind, closed_eigenvalues};
 
 const STATES: usize = 6;
@@ -54,12 +53,13 @@ fn table() -> Vec<Row> {
 
 /// What pcc finds: symmetric functions, their derivatives, and the eigenvalues that follow from the former.
 fn found(reference: &Reference) -> (Vec<f64>, Vec<f64>, Vec<Complex<f64>>) {
-    let schur = SchurForm::new(reference.matrix.clone()).unwrap();
-    let spectrum = Spectrum::new(&schur.eigenvalues()).unwrap();
+    let solution = Solution::new(reference.matrix.clone(), None).unwrap();
+    let spectrum = Spectrum::new(solution.eigenvalues()).unwrap();
     let places = nearest(&reference.eigenvalues, spectrum.eigenvalues());
     let group: Vec<Complex<f64>> = places.into_iter().map(|at| spectrum.eigenvalues()[at]).collect();
     let symmetric = components_of(OutputKind::Closed, &group);
-    let system = ReducedSystem::new(&schur, std::slice::from_ref(&reference.derivative), &group).unwrap();
+    let slopes = Slopes { state_matrix: std::slice::from_ref(&reference.derivative), second_order: &[] };
+    let system = ReducedSystem::new(&solution, slopes, &group).unwrap();
     let slopes = system.differentiate(OutputKind::Closed, &group).unwrap().remove(0);
     let mut roots = vec![Complex::default(); group.len()];
     closed_eigenvalues(&symmetric, group.len() / 2, &mut roots);

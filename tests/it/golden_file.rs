@@ -197,7 +197,17 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 fn verdict(b: &mut B) -> Value {
-    b.fields(&[("rigid_body_modes", &u32_number)])
+    let margin =
+        |b: &mut B| b.fields(&[("kind", &|b| b.kind(&["growth_rate", "damping_ratio"])), ("value", &B::float)]);
+    let band = |b: &mut B| {
+        b.fields(&[("lower", &B::float), ("upper", &B::float), ("modes", &u32_number), ("reals", &u32_number)])
+    };
+    b.fields(&[
+        ("rigid_body_modes", &u32_number),
+        ("tolerance", &B::float),
+        ("margin", &margin),
+        ("band", &|b| b.option(band)),
+    ])
 }
 
 /// The document that a file holds, read by hand.

@@ -11,7 +11,6 @@ use crate::report::PartReport;
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use num_complex::Complex;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::{InstructionSet, save};
 use pcc_evaluate::session::{Request, Session, SessionError};
@@ -166,8 +165,7 @@ fn at_points(
         let references: Vec<&[f64]> = standardized.iter().map(Vec::as_slice).collect();
         let block = evaluate_points(surrogate, &plan, &references);
         let eigenvalues = |i: usize| block.eigenvalues.iter().map(|mode| mode[i]).collect();
-        let top = |i: usize| Complex::new(block.max_re[i], block.top_frequency[i]);
-        let results = (0..group.len()).map(|i| (eigenvalues(i), top(i))).collect();
+        let results = (0..group.len()).map(|i| (eigenvalues(i), block.top(i))).collect();
         Ok(Evaluated { labels: surrogate.labels(), results })
     })?;
     Ok(PointsReport { points: count, stable_points: stable, file: out.display().to_string() })

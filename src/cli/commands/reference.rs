@@ -46,7 +46,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         .inspect_err(|_| context.say_recorded(&books))
         .map_err(|error| about(&options.study.display().to_string(), error))?;
     let elapsed = start.elapsed().as_secs_f64();
-    context.print(&EvalReport::of_model(&study.name, &found.outputs, &found.summary, sampling.seed, elapsed))?;
+    context.print(&EvalReport::of_model(&study.name, &found, study.spectrum.margin, sampling.seed, elapsed))?;
     Ok(Ending::Done)
 }
 

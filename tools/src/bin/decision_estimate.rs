@@ -43,7 +43,7 @@ fn ratios(more: &str, levels: usize, points: u64) -> Result<Vec<f64>, Box<dyn Er
             let runs = surrogate.training.counts.direct_computations;
             let misclassified = comparison.misclassified_percent();
             println!("{inputs}  {seed:4}  {runs:5}  {estimate:11.4}  {truth:8.4}  {misclassified:15.4}");
-            let resolution = 300.0 / comparison.stable_model as f64;
+            let resolution = 300.0 / (comparison.proportion_model() * comparison.samples as f64);
             if estimate.max(truth) > resolution {
                 ratios.push(truth / estimate);
             }

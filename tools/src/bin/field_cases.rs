@@ -7,6 +7,7 @@
 use pcc_compile::compilation::build;
 use pcc_compile::reference::ModelSample;
 use pcc_compile::study::Study;
+use pcc_evaluate::components::Verdict;
 use pcc_evaluate::foundation::Silent;
 use std::path::Path;
 use std::time::Instant;
@@ -27,7 +28,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         names = studies.filter_map(|name| name.strip_suffix(".toml").map(str::to_owned)).collect();
         names.sort();
     }
-    println!("study seed runs seconds misclassified% stable% model% flutter% divergence% true/estimated groups");
+    println!(
+        "study seed runs seconds derivatives misclassified% stable% marginal% unstable% flutter% divergence% model:"
+    );
     for name in names {
         let text = std::fs::read_to_string(folder.join(format!("{name}.toml")))?;
         let study = Study::from_toml_in(&text, &folder)?;
@@ -45,22 +48,30 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let seconds = start.elapsed().as_secs_f64();
             let comparison = sample.compare(&surrogate)?;
             let block = sample.surrogate_at(&surrogate, points as usize)?;
-            let share = |holds: &dyn Fn(f64, f64) -> bool| {
-                let found = block.max_re.iter().zip(&block.top_frequency).filter(|(re, im)| holds(**re, **im)).count();
+            let share = |verdict: Verdict| {
+                let found = (0..points as usize).filter(|&sample| block.top(sample).verdict() == verdict).count();
                 100.0 * found as f64 / points as f64
             };
-            let (stable, model) = (comparison.proportion_surrogate(), comparison.proportion_model());
-            let ratio =
-                surrogate.decision.proportion_error.map_or(f64::NAN, |error| (stable - model).abs() / model / error);
+            let [marginal, unstable] = [comparison.marginal(), comparison.unstable()];
+            let off = (unstable[0] - unstable[1]).abs() / (1.0 - unstable[1]);
+            let ratio = surrogate.decision.proportion_error.map_or(f64::NAN, |error| off / error);
             let groups: Vec<&str> = surrogate.outputs.iter().map(|output| output.name.as_str()).collect();
             println!(
-                "{name} {seed} {} {seconds:.2} {:.4} {:.3} {:.3} {:.3} {:.3} {ratio:.2} [{}]",
+                "{name} {seed} {} {seconds:.2} {} {:.4} {:.3} {:.3} {:.3} {:.3} {:.3} model: {:.3} {:.3} {:.3} \
+                 true/estimated {ratio:.2} undamped {} tolerance {:.1e} [{}]",
                 surrogate.training.counts.direct_computations,
+                surrogate.training.counts.gradients,
                 comparison.misclassified_percent(),
-                100.0 * stable,
-                100.0 * model,
-                share(&|re, im| re >= 0.0 && im != 0.0),
-                share(&|re, im| re >= 0.0 && im == 0.0),
+                100.0 * comparison.proportion_surrogate(),
+                100.0 * marginal[1],
+                100.0 * unstable[1],
+                share(Verdict::Flutter),
+                share(Verdict::Divergence),
+                100.0 * comparison.proportion_model(),
+                100.0 * marginal[0],
+                100.0 * unstable[0],
+                surrogate.is_undamped(),
+                surrogate.verdict.tolerance,
                 groups.join(" | "),
             );
         }

@@ -135,7 +135,7 @@ pub fn match_answers(
                     problems.push(RowProblem::Spectrum { line, run, cause });
                     continue;
                 }
-                RunOutcome::Answered(Computation { eigenvalues: eigenvalues.clone(), reductions: None })
+                RunOutcome::Answered(Computation::of_eigenvalues(eigenvalues.clone()))
             }
             Err(cause) => RunOutcome::Failed { attempts: 1, cause: cause.clone(), by_circumstances: false },
         };

@@ -6,7 +6,8 @@
 
 use super::run::Run;
 use crate::mechanics::model::Model;
-use crate::mechanics::spectrum::{Spectrum, SpectrumError};
+use crate::mechanics::spectrum::{Spectrum, SpectrumError, free_motion};
+use crate::numerics::accuracy::Accuracy;
 use crate::numerics::zero_eigenvalues::zero_eigenvalues;
 use crate::study::Study;
 use nalgebra::Complex;
@@ -47,14 +48,28 @@ impl Structure {
     pub fn spectrum(
         &self,
         eigenvalues: &[Complex<f64>],
+        accuracies: &[Accuracy],
         study: &Study,
         model: &dyn Model,
     ) -> Result<Spectrum, SpectrumError> {
-        let spectrum = Spectrum::new(eigenvalues)?;
+        let spectrum = Spectrum::with_accuracies(eigenvalues, accuracies, study.spectrum.margin)?;
         let negligible = spectrum.rigid_body_modes();
         // Most models have none, and need not be looked at.
-        let most = if negligible > 0 { *self.zeros.get_or_init(|| zeros(study, model)) } else { 0 };
-        spectrum.with_rigid_body_modes(negligible.min(most))
+        let zeros = || *self.zeros.get_or_init(|| zeros(study, model));
+        let Some(stated) = study.spectrum.rigid_body_modes else {
+            let most = if negligible > 0 { zeros() } else { 0 };
+            return spectrum.with_rigid_body_modes(negligible.min(most));
+        };
+        if let Some(found) = spectrum.contradicts_rigid_body_modes(stated) {
+            return Err(SpectrumError::RigidBodyModes { stated, found });
+        }
+        match if negligible > stated { zeros() } else { 0 } {
+            more if more > stated && more != usize::MAX => {
+                let found = format!("the structure of the model makes {more} eigenvalues zero");
+                Err(SpectrumError::RigidBodyModes { stated, found })
+            }
+            _ => spectrum.with_rigid_body_modes(stated),
+        }
     }
 }
 
@@ -64,8 +79,12 @@ fn zeros(study: &Study, model: &dyn Model) -> usize {
         let inputs = &study.inputs;
         let mut point = vec![0.0; inputs.dimension()];
         random_point(inputs, study.seed, Purpose::Design, FIRST_STRUCTURE_POINT + index, &mut point);
-        let linearization = model.linearization(&inputs.physical(&point)).ok().flatten()?;
-        Some(zero_eigenvalues(linearization.state_matrix))
+        let linearization = model.system(&inputs.physical(&point)).ok().flatten()?;
+        let most = zero_eigenvalues(linearization.state_matrix);
+        match linearization.second_order.filter(|_| most > 0) {
+            Some(system) => Some(free_motion(&system, most).unwrap_or(most)),
+            None => Some(most),
+        }
     };
     (0..STRUCTURE_POINTS).filter_map(at_point).min().unwrap_or(usize::MAX)
 }

@@ -4,8 +4,8 @@ use super::ledger::{Campaign, Ledger};
 use super::rigid_body_motion::Structure;
 use crate::campaign::journal::{JournalError, RunOutcome};
 use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
-use crate::mechanics::spectrum::{Computation, Reductions, Spectrum, SpectrumError};
-use crate::numerics::eigenvalues::SchurForm;
+use crate::mechanics::spectrum::{Computation, Reductions, Slopes, Solution, Spectrum, SpectrumError};
+use crate::numerics::accuracy::Accuracy;
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map, try_map_waiting};
@@ -262,16 +262,17 @@ impl<'a> Runner<'a> {
     /// Whether a recorded answer has the derivatives that are wanted, for the modes that are wanted.
     fn suffices(&self, computation: &Computation) -> bool {
         let has_them = |modes: Vec<usize>| computation.reductions.as_ref().is_some_and(|found| found.modes == modes);
-        !self.with_derivatives || has_them(self.modes_of_interest(&computation.eigenvalues))
+        !self.with_derivatives || has_them(self.modes_of_interest(computation))
     }
 
     /// Frequency ranks of the modes that the study asks for, as far as they oscillate.
-    fn modes_of_interest(&self, eigenvalues: &[Complex<f64>]) -> Vec<usize> {
-        self.spectrum(eigenvalues).map_or(Vec::new(), |spectrum| self.study.spectrum.modes.up_to(spectrum.count()))
+    fn modes_of_interest(&self, computation: &Computation) -> Vec<usize> {
+        self.spectrum(&computation.eigenvalues, &computation.accuracies)
+            .map_or(Vec::new(), |spectrum| self.study.spectrum.modes.of_interest(&spectrum))
     }
 
-    fn spectrum(&self, eigenvalues: &[Complex<f64>]) -> Result<Spectrum, SpectrumError> {
-        self.structure.spectrum(eigenvalues, self.study, &*self.model)
+    fn spectrum(&self, eigenvalues: &[Complex<f64>], accuracies: &[Accuracy]) -> Result<Spectrum, SpectrumError> {
+        self.structure.spectrum(eigenvalues, accuracies, self.study, &*self.model)
     }
 
     /// The model at points that the ledger does not know.
@@ -320,7 +321,7 @@ impl<'a> Runner<'a> {
             .into_iter()
             .zip(&points)
             .map(|(result, point)| {
-                let computation = result.map(|eigenvalues| Computation { eigenvalues, reductions: None });
+                let computation = result.map(Computation::of_eigenvalues);
                 self.record(point, computation, each, false, skips, observer)
             })
             .collect();
@@ -363,31 +364,41 @@ impl<'a> Runner<'a> {
 
     /// The answer as the study sees it.
     fn see(&self, point: &[f64], computation: Computation) -> Result<RunSpectrum, RunError> {
-        let Computation { eigenvalues, reductions } = computation;
+        let Computation { eigenvalues, accuracies, reductions } = computation;
         let spectrum = self
-            .spectrum(&eigenvalues)
+            .spectrum(&eigenvalues, &accuracies)
             .map_err(|cause| RunError::Spectrum { point: self.study.inputs.describe(point), cause })?;
         Ok((spectrum, reductions.filter(|_| self.with_derivatives)))
     }
 
     fn direct_computation(&self, point: &[f64]) -> Result<Computation, ModelError> {
-        let linearization = if self.with_derivatives { self.model.linearization(point)? } else { None };
-        let Some(Linearization { state_matrix, derivatives }) = linearization else {
-            return Ok(Computation { eigenvalues: self.model.eigenvalues(point)?, reductions: None });
+        let linearization =
+            if self.with_derivatives { self.model.linearization(point)? } else { self.model.system(point)? };
+        let Some(Linearization { state_matrix, derivatives, second_order, second_order_derivatives }) = linearization
+        else {
+            return Ok(Computation::of_eigenvalues(self.model.eigenvalues(point)?));
         };
-        let expected = self.study.inputs.dimension();
-        let found = derivatives.iter().filter(|derivative| derivative.shape() == state_matrix.shape()).count();
-        if (found, derivatives.len()) != (expected, expected) {
-            return Err(ModelError::Derivatives { found, expected });
+        if self.with_derivatives {
+            let expected = self.study.inputs.dimension();
+            let found = derivatives.iter().filter(|derivative| derivative.shape() == state_matrix.shape()).count();
+            if (found, derivatives.len()) != (expected, expected) {
+                return Err(ModelError::Derivatives { found, expected });
+            }
         }
-        let schur = SchurForm::new(state_matrix)?;
-        let eigenvalues = schur.eigenvalues();
+        let mut solution = Solution::new(state_matrix, second_order)?;
+        let spectrum = self.spectrum(solution.eigenvalues(), &[]).ok();
+        solution.look_closer(spectrum.as_ref().map_or(0, Spectrum::rigid_body_modes));
+        let (eigenvalues, accuracies) = (solution.eigenvalues().to_vec(), solution.accuracies().to_vec());
         let reduce = |spectrum: Spectrum| {
-            let modes = self.study.spectrum.modes.up_to(spectrum.count());
-            Reductions::new(&schur, &derivatives, &spectrum, modes)
+            let modes = self.study.spectrum.modes.of_interest(&spectrum);
+            let slopes = Slopes { state_matrix: &derivatives, second_order: &second_order_derivatives };
+            Reductions::new(&solution, slopes, &spectrum, modes)
         };
-        let reductions = self.spectrum(&eigenvalues).ok().map(reduce);
-        Ok(Computation { eigenvalues, reductions })
+        let reductions = match self.with_derivatives {
+            true => self.spectrum(&eigenvalues, &accuracies).ok().map(reduce),
+            false => None,
+        };
+        Ok(Computation { eigenvalues, accuracies, reductions })
     }
 
     /// Modes with ranks must be as many at every point, and eigenvalues that are followed, too.

@@ -30,7 +30,7 @@
 use super::undecided::{is_chance, undecided};
 use crate::campaign::Run;
 use crate::fitting::fit::Fitted;
-use pcc_evaluate::components::{Block, Output, OutputKind, spectral_abscissa};
+use pcc_evaluate::components::{Block, Margin, Output, OutputKind, spectral_abscissa};
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
 use pcc_evaluate::probability::inputs::random_point;
@@ -155,16 +155,16 @@ fn honest_residuals(seen: &[Vec<f64>], blind: &[Vec<f64>]) -> Vec<Vec<f64>> {
     inflated.map(|rest| rest.iter().map(|e| FLATTERY * e).collect()).chain(blind.iter().cloned()).collect()
 }
 
-/// max Re λ at run i over the modes that the surrogate carries, by the model.
-fn carried_max_re(surrogate: &Surrogate, values: &[Vec<f64>], i: usize) -> f64 {
+/// The largest excess at run i over the modes that the surrogate carries, by the model.
+fn carried_excess(surrogate: &Surrogate, values: &[Vec<f64>], i: usize) -> f64 {
     let exact: Vec<f64> = values.iter().map(|value| value[i]).collect();
-    spectral_abscissa(&surrogate.eigenvalues(&exact))
+    surrogate.top(&exact).excess
 }
 
 fn contradicts(surrogate: &Surrogate, values: &[Vec<f64>], i: usize, run: &Run) -> bool {
-    let carried = carried_max_re(surrogate, values, i);
-    let (model, scale) = (run.spectrum.max_re(), run.spectrum.largest());
-    (model < 0.0) != (carried < 0.0) && (model - carried).abs() > RECOMBINATION * scale
+    let carried = carried_excess(surrogate, values, i);
+    let (model, scale) = (run.spectrum.top().excess, run.spectrum.largest());
+    is_not_unstable(model) != is_not_unstable(carried) && (model - carried).abs() > RECOMBINATION * scale
 }
 
 fn residual_quantiles(
@@ -190,7 +190,7 @@ pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &
     let is_unlisted: Vec<bool> = (0..runs.len()).map(|i| contradicts(surrogate, values, i, &runs[i])).collect();
     let unlisted = is_unlisted.iter().filter(|&&holds| holds).count() as u64;
     let forgotten = share(&|i| is_unlisted[i]);
-    let stable = share(&|i| carried_max_re(surrogate, values, i) < 0.0);
+    let stable = share(&|i| is_not_unstable(carried_excess(surrogate, values, i)));
     let proportion_error = (forgotten > 0.0).then_some(forgotten / stable).filter(|error| error.is_finite());
     let decision = Decision { max_re_residuals: Vec::new(), proportion_error };
     Judgement { decision, unlisted, ..Judgement::default() }
@@ -262,8 +262,8 @@ pub(super) fn judged_point(surrogate: &Surrogate, i: usize) -> Vec<f64> {
 struct Judge<'a> {
     surrogate: &'a Surrogate,
     block: Block,
-    /// The points that are tried, by |max Re|.
-    near: Vec<usize>,
+    /// The points that are tried, by their distance from instability, each with the number of points it stands for.
+    near: Vec<(usize, f64)>,
     weights: Vec<f64>,
     observer: &'a dyn Observer,
 }
@@ -271,22 +271,28 @@ struct Judge<'a> {
 impl<'a> Judge<'a> {
     fn new(surrogate: &'a Surrogate, runs: &[Run], observer: &'a dyn Observer) -> Result<Self, Interrupted> {
         let block = at_judged_points(surrogate, observer)?;
-        let mut near: Vec<usize> = (0..POINTS).collect();
-        near.select_nth_unstable_by(TRIED_POINTS, |&a, &b| {
-            block.max_re[a].abs().total_cmp(&block.max_re[b].abs()).then(a.cmp(&b))
-        });
-        near.truncate(TRIED_POINTS);
-        near.sort_unstable_by(|&a, &b| block.max_re[a].abs().total_cmp(&block.max_re[b].abs()).then(a.cmp(&b)));
-        let distances: Vec<f64> = runs.iter().map(|run| run.spectrum.max_re().abs()).collect();
-        let mut sorted = distances.clone();
+        // Marginal points do not say how near they are to instability.
+        let (marginal, mut near): (Vec<usize>, Vec<usize>) = (0..POINTS).partition(|&i| block.excess[i] == 0.0);
+        let nearer = |a: &usize, b: &usize| block.excess[*a].abs().total_cmp(&block.excess[*b].abs()).then(a.cmp(b));
+        if near.len() > TRIED_POINTS {
+            near.select_nth_unstable_by(TRIED_POINTS, nearer);
+            near.truncate(TRIED_POINTS);
+        }
+        near.sort_unstable_by(nearer);
+        let every = marginal.len().div_ceil(TRIED_POINTS).max(1);
+        let near = marginal.iter().step_by(every).map(|&i| (i, every as f64)).chain(near.into_iter().map(|i| (i, 1.0)));
+        let near = near.collect();
+        let distances: Vec<f64> = runs.iter().map(|run| run.spectrum.top().excess.abs()).collect();
+        let mut sorted: Vec<f64> = distances.iter().copied().filter(|&distance| distance > 0.0).collect();
         sorted.sort_by(f64::total_cmp);
-        let scale = quantile(&sorted, 0.5).max(f64::MIN_POSITIVE);
+        let scale = if sorted.is_empty() { f64::MIN_POSITIVE } else { quantile(&sorted, 0.5) };
         let weights = distances.iter().map(|distance| 1.0 / (1.0 + (distance / scale).powi(2))).collect();
         Ok(Self { surrogate, block, near, weights, observer })
     }
 
+    /// The share of points that are not unstable.
     fn proportion(&self) -> f64 {
-        self.block.max_re.iter().filter(|&&max_re| max_re < 0.0).count() as f64 / POINTS as f64
+        self.block.excess.iter().filter(|&&excess| is_not_unstable(excess)).count() as f64 / POINTS as f64
     }
 
     fn effective_runs(&self) -> f64 {
@@ -306,7 +312,12 @@ impl<'a> Judge<'a> {
             _ => f64::INFINITY,
         };
         // Not less than what rounding of the recombination adds.
-        ROUNDING_MARGIN * self.surrogate.outputs.iter().map(of_output).fold(f64::MIN_POSITIVE, f64::max)
+        let of_margin = match self.surrogate.verdict.margin {
+            Margin::GrowthRate(_) => 1.0,
+            // |λ| moves by as much as λ.
+            Margin::DampingRatio(ratio) => 1.0 + ratio,
+        };
+        of_margin * ROUNDING_MARGIN * self.surrogate.outputs.iter().map(of_output).fold(f64::MIN_POSITIVE, f64::max)
     }
 
     /// Δp for the residuals of runs `first`….
@@ -323,19 +334,24 @@ impl<'a> Judge<'a> {
     /// Stable points gained minus lost, as a share, if every component were larger by its residual.
     fn share(&self, residual: &[f64]) -> f64 {
         let (mut values, mut eigenvalues) = (vec![0.0; residual.len()], Vec::new());
-        let mut gained = 0i64;
+        let mut gained = 0.0;
         let reach = self.reach(residual);
-        for &i in self.near.iter().take_while(|&&i| self.block.max_re[i].abs() <= reach) {
+        for &(i, stands_for) in self.near.iter().take_while(|&&(i, _)| self.block.excess[i].abs() <= reach) {
             for ((value, component), rest) in values.iter_mut().zip(&self.block.components).zip(residual) {
                 *value = component[i] + rest;
             }
             eigenvalues.clear();
             self.surrogate.outputs.iter().for_each(|output| output.recombine(&values, &mut eigenvalues));
-            let is_stable = spectral_abscissa(&eigenvalues) < 0.0;
-            gained += i64::from(is_stable) - i64::from(self.block.max_re[i] < 0.0);
+            let moved = is_not_unstable(self.surrogate.verdict.top(&eigenvalues).excess);
+            gained += stands_for * (f64::from(moved) - f64::from(is_not_unstable(self.block.excess[i])));
         }
-        gained as f64 / POINTS as f64
+        gained / POINTS as f64
     }
+}
+
+/// Whether a point with this excess is stable or marginal; what is no number is neither.
+fn is_not_unstable(excess: f64) -> bool {
+    excess <= 0.0
 }
 
 /// The quantile of sorted values by linear interpolation between order statistics (type 7 of Hyndman and Fan 1996).

@@ -8,7 +8,7 @@
 //! it, until the groups stay.
 
 use super::evaluations::groups;
-use super::{BuildError, decision, record};
+use super::{BuildError, Built, decision, record};
 use crate::campaign::{Campaign, Run, RunError, Runner};
 use crate::fitting::design::TensorGauss;
 use crate::fitting::fit::gpc::{Projection, project, total_degree};
@@ -21,8 +21,8 @@ use crate::study::Study;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::polynomials::{IndexSet, Mesh, MultiIndex, Recurrence};
+use pcc_evaluate::surrogate::Counts;
 use pcc_evaluate::surrogate::StopReason;
-use pcc_evaluate::surrogate::{Counts, Surrogate};
 
 /// Nodes whose coordinates are held in memory together.
 const BLOCK: usize = 4096;
@@ -32,7 +32,7 @@ pub(super) fn build(
     campaign: Campaign<'_>,
     model: Box<dyn Model>,
     observer: &dyn Observer,
-) -> Result<Surrogate, BuildError> {
+) -> Result<Built, BuildError> {
     let mut elements = Elements::new(campaign.study, Runner::of(campaign, model), observer)?;
     elements.run(0)?;
     elements.levels.push(elements.spent);
@@ -200,7 +200,7 @@ impl<'a> Elements<'a> {
         (!inputs.is_empty()).then_some((element, inputs))
     }
 
-    fn into_surrogate(self) -> Result<Surrogate, BuildError> {
+    fn into_surrogate(self) -> Result<Built, BuildError> {
         let node_weights: Vec<f64> = self.grid.weights(0..self.grid.len()).collect();
         let weights: Vec<f64> = self
             .mesh
@@ -236,7 +236,8 @@ impl<'a> Elements<'a> {
         let judgement = decision::judge_by_nodes(&surrogate, &values, &runs, &weights);
         record::judged(&mut surrogate, &judgement, &runs);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
-        Ok(surrogate)
+        let rigid_body_modes = super::rigid_body_modes(&runs);
+        Ok(Built { surrogate, rigid_body_modes })
     }
 
     /// Whether no element asks to be divided any more.

@@ -37,6 +37,12 @@ pub enum BuildError {
         /// The smallest list that has all of its groups.
         smallest: Vec<usize>,
     },
+    /// A band of frequencies without modes.
+    #[error("spectrum.frequencies: no mode is there in the middle of the inputs; there are modes at {}", listed(.frequencies))]
+    EmptyBand {
+        /// Those of all modes there, in Hz.
+        frequencies: Vec<f64>,
+    },
     /// An eigenvalue grows beyond all bounds inside the ranges of the inputs.
     #[error(
         "an eigenvalue goes to infinity, or nearly so, inside the ranges of the inputs, near {point}, as where a mass or a time constant vanishes: it \
@@ -67,4 +73,15 @@ pub enum BuildError {
     /// The user asked to stop.
     #[error("{0}")]
     Interrupted(#[from] Interrupted),
+}
+
+/// The first of many frequencies, and the last.
+fn listed(frequencies: &[f64]) -> String {
+    const MOST_NAMED: usize = 8;
+    let text = |frequency: &f64| format!("{frequency:.4}");
+    let named: Vec<String> = frequencies.iter().take(MOST_NAMED).map(text).collect();
+    match frequencies.last().filter(|_| frequencies.len() > MOST_NAMED) {
+        Some(last) => format!("{}, … up to {} Hz", named.join(", "), text(last)),
+        None => format!("{} Hz", named.join(", ")),
+    }
 }

@@ -13,6 +13,7 @@ use crate::study::{Derivatives, DesignKind, Study};
 use nalgebra::Complex;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
+use pcc_evaluate::surrogate::Band;
 
 /// Fewer runs say nothing of how a component varies.
 const LEAST_RUNS: usize = 2;
@@ -32,6 +33,8 @@ pub(super) struct Level {
     pub resolutions: Vec<f64>,
     /// Whether eigenvalues of runs with vectors could not be followed by them.
     pub is_by_modulus: bool,
+    /// The band of frequencies that chose its modes.
+    pub band: Option<Band>,
 }
 
 impl Level {
@@ -123,6 +126,7 @@ impl<'a> Evaluations<'a> {
             resolutions: outputs.iter().flat_map(|output| resolutions(output, &self.runs)).collect(),
             outputs,
             is_by_modulus: false,
+            band: None,
         })
     }
 

@@ -9,7 +9,8 @@ use crate::campaign::Run;
 use crate::fitting::design::Samples;
 use crate::fitting::fit::method::Previous;
 use crate::fitting::regression::{BasisTables, Gradients, Response};
-use crate::mechanics::spectrum::{Group, Groups, Labels, Numbers, components_of, nearest, output};
+use crate::mechanics::spectrum::{Group, Groups, Labels, Numbers, component_errors, components_of, nearest, output};
+use crate::numerics::accuracy::Accuracy;
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::{Output, OutputKind};
@@ -33,6 +34,11 @@ impl Followed<'_> {
     pub fn eigenvalues(&self, group: &Group) -> Vec<Vec<Complex<f64>>> {
         let at_run = |(run, found): (usize, &Run)| self.groups.eigenvalues(group, &self.labels, run, &found.spectrum);
         self.runs.iter().enumerate().map(at_run).collect()
+    }
+
+    /// The accuracy of the eigenvalues of a group at a run, in the same order.
+    fn accuracies(&self, group: &Group, run: usize) -> Vec<Accuracy> {
+        self.groups.accuracies(group, &self.labels, run, &self.runs[run].spectrum)
     }
 
     /// The eigenvalue of a label at a run.
@@ -169,8 +175,15 @@ impl<'a> GroupFits<'a> {
             let at_run = components_of(group.kind(), lambdas);
             values.iter_mut().zip(at_run).for_each(|(list, value)| list.push(value));
         }
+        let mut gradients = followed.has_derivatives.then(|| self.gradients(&output, &eigenvalues, followed));
+        for component in vanishing(group, &values, &eigenvalues, followed) {
+            values[component].fill(0.0);
+            if let Some(gradients) = &mut gradients {
+                gradients[component].slopes.fill(0.0);
+            }
+        }
         GroupFit {
-            gradients: followed.has_derivatives.then(|| self.gradients(&output, &eigenvalues, followed)),
+            gradients,
             resolutions: resolutions(&output, followed.runs),
             output,
             eigenvalues,
@@ -189,6 +202,25 @@ impl<'a> GroupFits<'a> {
         let found: Vec<(usize, Vec<Vec<f64>>)> = followed.runs.iter().enumerate().filter_map(slopes).collect();
         gradients(&found, output.components.len(), followed.samples, self.study)
     }
+}
+
+/// The components of a group that cannot be told from zero at any run: they are zero.
+fn vanishing(
+    group: &Group,
+    values: &[Vec<f64>],
+    eigenvalues: &[Vec<Complex<f64>>],
+    followed: &Followed<'_>,
+) -> Vec<usize> {
+    let mut left: Vec<usize> = (0..values.len()).collect();
+    for (run, lambdas) in eigenvalues.iter().enumerate() {
+        // Most components are ruled out by the first run.
+        if left.is_empty() {
+            break;
+        }
+        let errors = component_errors(group.kind(), lambdas, &followed.accuracies(group, run));
+        left.retain(|&component| values[component][run].abs() <= errors[component]);
+    }
+    left
 }
 
 /// The derivatives of `count` components by ξ, from those by the inputs at some runs: one list per input each.

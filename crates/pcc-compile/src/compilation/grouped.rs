@@ -16,6 +16,8 @@ use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
+use pcc_evaluate::surrogate::Band;
+use std::f64::consts::TAU;
 
 /// Fits groups of eigenvalues, whatever their number of oscillating modes.
 pub(super) struct GroupedEigenvalues<'a> {
@@ -108,13 +110,40 @@ impl<'a> GroupedEigenvalues<'a> {
             let has_listed = |numbers: &Numbers| numbers.modes.iter().any(|mode| modes.contains(mode));
             numbered.retain(|(numbers, _)| self.refusal.is_some() || has_listed(numbers));
         }
+        let band = match self.study.spectrum.modes {
+            Modes::Band([lower, upper]) => {
+                let (modes, reals) = numbered.iter().fold((0, 0), |(modes, reals), (numbers, _)| {
+                    (modes + numbers.modes.len(), reals + numbers.reals.len())
+                });
+                self.keep_band(&mut numbered)?;
+                Some(Band { lower, upper, modes, reals })
+            }
+            Modes::All | Modes::Ranks(_) => None,
+        };
         // Modes in the order of their numbers, then real eigenvalues in that of theirs.
         numbered.sort_by_key(|(numbers, _)| {
             (numbers.modes.first().copied().unwrap_or(usize::MAX), numbers.reals.first().copied())
         });
         drop(followed);
         let is_by_modulus = has_derivatives && !kind.follow_vectors && ranked.is_none();
-        Ok(Some(level(samples, numbered, is_by_modulus)))
+        Ok(Some(level(samples, numbered, is_by_modulus, band)))
+    }
+
+    /// Keeps the groups that have an eigenvalue in the band of frequencies in the middle of the inputs.
+    fn keep_band(&self, numbered: &mut Vec<(Numbers, GroupFit)>) -> Result<(), BuildError> {
+        let modes = &self.study.spectrum.modes;
+        let frequencies = |fit: &GroupFit| self.fits.eigenvalues_at_center(fit);
+        let is_inside =
+            |(_, fit): &(Numbers, GroupFit)| frequencies(fit).iter().any(|lambda| modes.has_frequency(*lambda));
+        if !numbered.iter().any(is_inside) {
+            let mut all: Vec<f64> =
+                numbered.iter().flat_map(|(_, fit)| frequencies(fit)).map(|lambda| lambda.im.abs() / TAU).collect();
+            all.sort_by(f64::total_cmp);
+            all.dedup_by(|a, b| (*a - *b).abs() <= f64::EPSILON * *b);
+            return Err(BuildError::EmptyBand { frequencies: all });
+        }
+        numbered.retain(is_inside);
+        Ok(())
     }
 
     /// The finest groups of listed modes, where frequency ranks are numbers of modes.
@@ -168,8 +197,8 @@ fn labels_by_rank(followed: &Followed<'_>, modes: &Modes) -> Option<Vec<usize>> 
     let oscillating: Vec<usize> =
         followed.groups.finest().iter().filter(|group| !group.is_closed()).map(|group| group.labels()[0]).collect();
     let count = match modes {
-        Modes::All if oscillating.len() < followed.groups.finest().len() => return None,
-        Modes::All => oscillating.len(),
+        Modes::All | Modes::Band(_) if oscillating.len() < followed.groups.finest().len() => return None,
+        Modes::All | Modes::Band(_) => oscillating.len(),
         Modes::Ranks(modes) => modes.iter().max().map_or(0, |last| last + 1),
     };
     let order = |run: usize, key: fn(Complex<f64>) -> f64| {
@@ -200,6 +229,7 @@ fn level(
     samples: crate::fitting::design::Samples,
     numbered: Vec<(Numbers, GroupFit)>,
     is_by_modulus: bool,
+    band: Option<Band>,
 ) -> (Level, Vec<ComponentResult>) {
     let mut outputs = Vec::with_capacity(numbered.len());
     let (mut values, mut resolutions, mut results) = (Vec::new(), Vec::new(), Vec::new());
@@ -211,5 +241,5 @@ fn level(
         results.extend(fit.fits);
         gradients = gradients.zip(fit.gradients).map(|(all, own)| [all, own].concat());
     }
-    (Level { samples, outputs: with_ids(outputs), values, gradients, resolutions, is_by_modulus }, results)
+    (Level { samples, outputs: with_ids(outputs), values, gradients, resolutions, is_by_modulus, band }, results)
 }

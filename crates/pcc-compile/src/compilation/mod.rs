@@ -22,7 +22,7 @@ mod unseen;
 pub use error::BuildError;
 pub use to_file::{BuildFileError, BuiltFile, build_to_file};
 
-use crate::campaign::{Campaign, Ledger};
+use crate::campaign::{Campaign, Ledger, Run};
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::Target;
 use components::{ComponentFit, ComponentResult};
@@ -75,7 +75,18 @@ pub fn build_with<'a>(
     model: Box<dyn Model>,
     observer: &dyn Observer,
 ) -> Result<Surrogate, BuildError> {
-    let Campaign { study, ledger } = campaign.into();
+    built(campaign.into(), model, observer).map(|built| built.surrogate)
+}
+
+/// A surrogate, and what it does not say of its model.
+struct Built {
+    surrogate: Surrogate,
+    /// Number of eigenvalues that are rigid-body motion.
+    rigid_body_modes: usize,
+}
+
+fn built(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Built, BuildError> {
+    let Campaign { study, ledger } = campaign;
     let blank = Ledger::blank(study);
     let campaign = Campaign { study, ledger: Some(ledger.unwrap_or(&blank)) };
     match study.fit.method.is_quadrature() {
@@ -86,7 +97,7 @@ pub fn build_with<'a>(
 
 /// The paper's five steps (section 3.3.3), for all components on one design: a level is a design of one size, with
 /// everything fitted anew.
-fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Surrogate, BuildError> {
+fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Built, BuildError> {
     let study = campaign.study;
     let mut fitting = Fitting::new(campaign)?;
     let mut evaluations = Evaluations::new(campaign, model, matches!(fitting, Fitting::Ranked(_)))?;
@@ -128,10 +139,16 @@ fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Obser
                     return Err(refusal);
                 }
                 surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
-                return Ok(surrogate);
+                let rigid_body_modes = rigid_body_modes(evaluations.runs());
+                return Ok(Built { surrogate, rigid_body_modes });
             }
         }
     }
+}
+
+/// How much is rigid-body motion in all of these runs.
+fn rigid_body_modes(runs: &[Run]) -> usize {
+    runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0)
 }
 
 /// How eigenvalues become components.

@@ -61,11 +61,34 @@ pub(super) fn surrogate(
 ) -> Surrogate {
     let runs = (evaluations.runs().len(), evaluations.failed() as u64);
     let mut training = training(study, fitted, level.gradients.as_deref(), runs, sizes.to_vec());
+    let lacking = without_derivatives(level, evaluations.runs().len());
+    if !lacking.is_empty() {
+        training.settings.push(setting("without_derivatives", SettingValue::Text(lacking.join(" and "))));
+    }
     if level.is_by_modulus {
         training.settings.push(setting("labels", SettingValue::Text("modulus".to_owned())));
     }
     let whole = Mesh::whole(study.inputs.dimension());
-    new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training)
+    let mut surrogate = new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training);
+    surrogate.verdict.band = level.band;
+    surrogate.verdict.tolerance = tolerance(evaluations.runs());
+    surrogate
+}
+
+/// Names of the groups that came too close to other modes for derivatives at some run.
+fn without_derivatives(level: &Level, runs: usize) -> Vec<String> {
+    let Some(gradients) = &level.gradients else { return Vec::new() };
+    let lacks =
+        |output: &&Output| output.components.iter().any(|component| gradients[component.id].points.len() < runs);
+    level.outputs.iter().filter(lacks).map(|output| output.name.clone()).collect()
+}
+
+/// What could not be told from zero at the runs that are marginal, as a rule; 0 where none is.
+fn tolerance(runs: &[Run]) -> f64 {
+    let errors = runs.iter().filter_map(|run| run.spectrum.marginal_error()).filter(|error| error.is_finite());
+    let mut errors: Vec<f64> = errors.collect();
+    errors.sort_by(f64::total_cmp);
+    errors.get(errors.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// A surrogate of one output alone, for trials.
@@ -79,9 +102,8 @@ pub(super) fn of_fits(study: &Study, output: &Output, fitted: &[ComponentResult]
 /// systems whose modes all oscillate do not say the latter, as they never did.
 pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[Run]) {
     surrogate.decision.clone_from(&judgement.decision);
-    if surrogate.has_real_eigenvalues() {
-        let rigid_body_modes = runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0);
-        surrogate.verdict = VerdictBasis { rigid_body_modes };
+    if surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default() {
+        surrogate.verdict.rigid_body_modes = super::rigid_body_modes(runs);
     }
     if judgement.unlisted > 0 {
         surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
@@ -115,7 +137,7 @@ fn new<'a>(
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         certificates: Vec::new(),
-        verdict: VerdictBasis::default(),
+        verdict: VerdictBasis { margin: study.spectrum.margin, ..VerdictBasis::default() },
     }
 }
 

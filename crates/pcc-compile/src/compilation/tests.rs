@@ -80,7 +80,7 @@ impl Model for Twins {
         state_matrix[(3, 1)] = -100.0 - mu - 1e-4;
         let mut derivative = DMatrix::zeros(4, 4);
         (derivative[(2, 0)], derivative[(3, 1)]) = (-1.0, -1.0);
-        Ok(Some(Linearization { state_matrix, derivatives: vec![derivative] }))
+        Ok(Some(Linearization::first_order(state_matrix, vec![derivative])))
     }
 }
 

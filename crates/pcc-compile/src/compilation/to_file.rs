@@ -1,6 +1,6 @@
 //! A build whose runs are recorded and whose surrogate goes to a file.
 
-use super::{BuildError, build};
+use super::{BuildError, Built, built};
 use crate::campaign::journal::JournalError;
 use crate::campaign::{Books, Failure, Note, Recording};
 use crate::study::Study;
@@ -33,6 +33,8 @@ pub enum BuildFileError {
 pub struct BuiltFile {
     /// The surrogate.
     pub surrogate: Surrogate,
+    /// Number of eigenvalues that are rigid-body motion, which a file need not say.
+    pub rigid_body_modes: usize,
     /// Length of its file.
     pub bytes: u64,
     /// The journal of the runs, if it stays.
@@ -63,8 +65,9 @@ pub fn build_to_file(
     let books = Books::of_build(study, recording, path)?;
     books.notes.iter().for_each(tell);
     let start = Instant::now();
-    let surrogate = match build(books.campaign(study), observer) {
-        Ok(surrogate) => surrogate,
+    let model = study.model().map_err(BuildError::from)?;
+    let Built { surrogate, rigid_body_modes } = match built(books.campaign(study), model, observer) {
+        Ok(built) => built,
         Err(error) => {
             if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
                 tell(&Note::FailuresReused);
@@ -76,8 +79,9 @@ pub fn build_to_file(
     let elapsed_seconds = start.elapsed().as_secs_f64();
     let bytes = encode(&surrogate, format)?;
     save(path, &bytes)?;
-    let built = BuiltFile {
+    let file = BuiltFile {
         surrogate,
+        rigid_body_modes,
         bytes: bytes.len() as u64,
         journal: books.kept_journal().map(Path::to_owned),
         reused: books.ledger.reused(),
@@ -85,5 +89,5 @@ pub fn build_to_file(
         elapsed_seconds,
     };
     books.close();
-    Ok(built)
+    Ok(file)
 }

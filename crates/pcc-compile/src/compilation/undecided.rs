@@ -8,7 +8,7 @@
 use crate::campaign::Run;
 use crate::mechanics::spectrum::nearest;
 use nalgebra::Complex;
-use pcc_evaluate::components::Output;
+use pcc_evaluate::components::{Margin, Output};
 use pcc_evaluate::surrogate::Surrogate;
 
 /// What happens less often is no chance.
@@ -20,7 +20,10 @@ pub(super) fn undecided(surrogate: &Surrogate, values: &[Vec<f64>], residuals: &
     let is_undecided = |(i, run): &(usize, &Run)| {
         let exact: Vec<f64> = values.iter().map(|value| value[*i]).collect();
         let predicted: Vec<f64> = exact.iter().zip(&residuals[*i]).map(|(value, rest)| value - rest).collect();
-        surrogate.outputs.iter().any(|output| is_unknown(output, &exact, &predicted, run.spectrum.max_re()))
+        surrogate
+            .outputs
+            .iter()
+            .any(|output| is_unknown(output, &exact, &predicted, surrogate.verdict.margin, run.spectrum.top().excess))
     };
     runs.iter().enumerate().filter(is_undecided).count()
 }
@@ -38,7 +41,7 @@ pub(super) fn is_chance(count: usize, expected: f64) -> bool {
 }
 
 /// Whether an eigenvalue of an output may be the largest and is predicted worse than its distance from zero.
-fn is_unknown(output: &Output, exact: &[f64], predicted: &[f64], max_re: f64) -> bool {
+fn is_unknown(output: &Output, exact: &[f64], predicted: &[f64], margin: Margin, largest: f64) -> bool {
     let eigenvalues = |components: &[f64]| {
         let mut found: Vec<Complex<f64>> = Vec::with_capacity(output.eigenvalue_count());
         output.recombine(components, &mut found);
@@ -46,8 +49,9 @@ fn is_unknown(output: &Output, exact: &[f64], predicted: &[f64], max_re: f64) ->
     };
     let (exact, predicted) = (eigenvalues(exact), eigenvalues(predicted));
     exact.iter().zip(nearest(&exact, &predicted)).any(|(lambda, j)| {
-        let error = (predicted[j].re - lambda.re).abs();
-        let is_known = error <= lambda.re.abs() || lambda.re + error < max_re;
+        let excess = margin.excess(*lambda);
+        let error = (margin.excess(predicted[j]) - excess).abs();
+        let is_known = error <= excess.abs() || excess + error < largest;
         // An error that is no number is not known.
         !is_known
     })
@@ -64,7 +68,7 @@ mod tests {
         let lambda = Complex::new(-1.0, 10.0);
         let numbers = Numbers { modes: vec![1], reals: Vec::new() };
         let outputs = with_ids(vec![output(OutputKind::Eigenvalue, &numbers, &[vec![lambda]])]);
-        is_unknown(&outputs[0], &[lambda.re, lambda.im], &[predicted, lambda.im], max_re)
+        is_unknown(&outputs[0], &[lambda.re, lambda.im], &[predicted, lambda.im], Margin::default(), max_re)
     }
 
     #[test]

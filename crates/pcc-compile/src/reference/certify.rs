@@ -1,12 +1,13 @@
 //! A verified bound on the stability proportion: fresh model runs against the surrogate.
 
+use super::compare::{Judged, Verdicts};
 use super::direct_computations::{ReferenceError, for_each_chunk, surrogate_block};
 use crate::campaign::Campaign;
 use pcc_evaluate::evaluation::{EvalError, Plan, monte_carlo};
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::probability::random::Purpose;
-use pcc_evaluate::probability::statistics::{DiscordantCounts, Interval};
-use pcc_evaluate::surrogate::{Certificate, Surrogate};
+use pcc_evaluate::probability::statistics::{Interval, Proportion};
+use pcc_evaluate::surrogate::{Certificate, MarginalBounds, Surrogate};
 
 /// How the fresh points are drawn, as certificates say it.
 const SCHEME: &str = "independent";
@@ -39,21 +40,29 @@ pub fn certify_with_model<'a>(
         return Err(ReferenceError::other_problem(surrogate, study));
     }
     let plan = Plan::new(surrogate);
-    let mut counts = DiscordantCounts { samples: runs, falsely_stable: 0, falsely_unstable: 0 };
+    let mut verdicts = Verdicts::default();
     for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
-        for (run, &max_re) in found.iter().zip(&block.max_re) {
-            let (model, predicted) = (run.spectrum.max_re() < 0.0, max_re < 0.0);
-            counts.falsely_stable += u64::from(predicted && !model);
-            counts.falsely_unstable += u64::from(model && !predicted);
-        }
+        verdicts.classify(surrogate, found.iter().map(|run| Judged::of(&run.spectrum)), &block);
         Ok(())
     })?;
     let summary = monte_carlo(surrogate, SURROGATE_SAMPLES, seed, observer).map_err(|error| match error {
         EvalError::Interrupted(interrupted) => ReferenceError::Run(interrupted.into()),
         other => ReferenceError::Surrogate(other),
     })?;
-    let Interval { lower, upper, level } = counts.bound(summary.stable_proportion(), level);
+    let counts = verdicts.of_stable();
+    let Interval { lower, upper, .. } = counts.bound(summary.stable_proportion(), level);
+    let proportion = |hits: u64| Proportion { hits, samples: summary.samples() };
+    let bounds = verdicts.has_marginal() || summary.marginal() > 0;
+    let marginal = bounds.then(|| {
+        let marginal = verdicts.of_marginal().bound(proportion(summary.marginal()), level);
+        let unstable = verdicts.of_unstable().bound(proportion(summary.unstable), level);
+        MarginalBounds {
+            falsely_marginal: verdicts.of_marginal().falsely_stable,
+            marginal: [marginal.lower, marginal.upper],
+            unstable: [unstable.lower, unstable.upper],
+        }
+    });
     Ok(Certificate {
         seed,
         samples: runs,
@@ -63,6 +72,7 @@ pub fn certify_with_model<'a>(
         level,
         lower,
         upper,
+        marginal,
         problem_hash: study.problem_hash(),
     })
 }

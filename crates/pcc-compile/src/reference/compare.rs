@@ -5,11 +5,11 @@ use super::matching::{Matching, by_output};
 use crate::campaign::Campaign;
 use crate::mechanics::spectrum::{Spectrum, components_of};
 use nalgebra::Complex;
-use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind};
+use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind, Verdict};
 use pcc_evaluate::evaluation::Plan;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::probability::random::Purpose;
-use pcc_evaluate::probability::statistics::{Moments, Proportion};
+use pcc_evaluate::probability::statistics::{DiscordantCounts, Moments, Proportion};
 use pcc_evaluate::surrogate::Surrogate;
 
 /// Standard deviations below this share of the mean, and both below this share of a component's scale, are rounding.
@@ -51,19 +51,102 @@ impl ComponentError {
     }
 }
 
+/// Verdicts of surrogate and model on the same points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Verdicts {
+    /// Points by what the surrogate says, stable, marginal or unstable, and in each by what the model says.
+    counts: [[u64; 3]; 3],
+}
+
+/// What the model says of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Judged {
+    /// The largest excess.
+    pub excess: f64,
+    /// Where that is zero, what it cannot be told from.
+    pub error: f64,
+}
+
+impl Judged {
+    pub fn of(spectrum: &Spectrum) -> Self {
+        Self { excess: spectrum.top().excess, error: spectrum.marginal_error().unwrap_or(0.0) }
+    }
+}
+
+/// Stable, marginal or unstable, in the order of [`Verdicts`].
+fn class(excess: f64) -> usize {
+    match Verdict::of(excess, 0.0) {
+        Verdict::Stable => 0,
+        Verdict::Marginal => 1,
+        Verdict::Flutter | Verdict::Divergence => 2,
+    }
+}
+
+impl Verdicts {
+    /// Counts a point, given the largest excess by the surrogate and by the model with its error. What one of them
+    /// cannot tell from zero, and the other cannot with the errors of both, is no disagreement.
+    pub(super) fn add(&mut self, surrogate: f64, model: f64, rounding: f64) {
+        let is_rounding =
+            (surrogate == 0.0 && model.abs() <= rounding) || (model == 0.0 && surrogate.abs() <= rounding);
+        let (said, truth) = (class(surrogate), class(model));
+        self.counts[if is_rounding { truth } else { said }][truth] += 1;
+    }
+
+    /// Counts the points of a block.
+    pub(super) fn classify(&mut self, surrogate: &Surrogate, model: impl Iterator<Item = Judged>, block: &Block) {
+        for (model, &excess) in model.zip(&block.excess) {
+            self.add(excess, model.excess, model.error.max(surrogate.verdict.tolerance));
+        }
+    }
+
+    fn surrogate(&self, class: usize) -> u64 {
+        self.counts[class].iter().sum()
+    }
+
+    fn model(&self, class: usize) -> u64 {
+        self.counts.iter().map(|row| row[class]).sum()
+    }
+
+    /// Points that the surrogate puts into a class and the model does not, and the other way round.
+    fn discordant(&self, class: usize) -> DiscordantCounts {
+        let both = self.counts[class][class];
+        DiscordantCounts {
+            samples: self.counts.iter().flatten().sum(),
+            falsely_stable: self.surrogate(class) - both,
+            falsely_unstable: self.model(class) - both,
+        }
+    }
+
+    /// Of stable points.
+    pub fn of_stable(&self) -> DiscordantCounts {
+        self.discordant(0)
+    }
+
+    /// Of marginal points.
+    pub fn of_marginal(&self) -> DiscordantCounts {
+        self.discordant(1)
+    }
+
+    /// Of unstable points.
+    pub fn of_unstable(&self) -> DiscordantCounts {
+        self.discordant(2)
+    }
+
+    /// Whether either of the two calls some point marginal.
+    pub fn has_marginal(&self) -> bool {
+        self.surrogate(1) + self.model(1) > 0
+    }
+}
+
 /// Model and surrogate on the same points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     /// Number of points.
     pub samples: u64,
-    /// Points at which the model is stable.
-    pub stable_model: u64,
-    /// Points at which the surrogate is stable.
-    pub stable_surrogate: u64,
-    /// Points that the surrogate calls stable and the model unstable.
-    pub falsely_stable: u64,
-    /// Points that the surrogate calls unstable and the model stable.
-    pub falsely_unstable: u64,
+    /// What each says of stability.
+    pub verdicts: Verdicts,
+    /// Number of eigenvalues of the model that are rigid-body motion.
+    pub rigid_body_modes: usize,
     /// Every component by id.
     pub components: Vec<ComponentError>,
 }
@@ -71,23 +154,58 @@ pub struct Comparison {
 impl Comparison {
     /// The model's share of stable points.
     pub fn proportion_model(&self) -> f64 {
-        Proportion { hits: self.stable_model, samples: self.samples }.value()
+        self.share(self.verdicts.model(0))
     }
 
     /// The surrogate's share of stable points.
     pub fn proportion_surrogate(&self) -> f64 {
-        Proportion { hits: self.stable_surrogate, samples: self.samples }.value()
+        self.share(self.verdicts.surrogate(0))
+    }
+
+    /// The shares of marginal points, by the model and by the surrogate.
+    pub fn marginal(&self) -> [f64; 2] {
+        [self.verdicts.model(1), self.verdicts.surrogate(1)].map(|hits| self.share(hits))
+    }
+
+    /// The shares of unstable points, by the model and by the surrogate.
+    pub fn unstable(&self) -> [f64; 2] {
+        [self.verdicts.model(2), self.verdicts.surrogate(2)].map(|hits| self.share(hits))
+    }
+
+    fn share(&self, hits: u64) -> f64 {
+        Proportion { hits, samples: self.samples }.value()
     }
 
     /// 100 |difference of the proportions|/proportion of the model; `None` if the model is never stable and the
     /// surrogate sometimes is.
     pub fn relative_error_percent(&self) -> Option<f64> {
-        relative_error_percent(self.stable_surrogate as f64, self.stable_model as f64)
+        relative_error_percent(self.verdicts.surrogate(0) as f64, self.verdicts.model(0) as f64)
+    }
+
+    /// The same of unstable points.
+    pub fn relative_error_of_unstable_percent(&self) -> Option<f64> {
+        relative_error_percent(self.verdicts.surrogate(2) as f64, self.verdicts.model(2) as f64)
+    }
+
+    /// Points that the surrogate calls stable and the model does not.
+    pub fn falsely_stable(&self) -> u64 {
+        self.verdicts.of_stable().falsely_stable
+    }
+
+    /// Points that the surrogate calls marginal and the model does not.
+    pub fn falsely_marginal(&self) -> u64 {
+        self.verdicts.of_marginal().falsely_stable
+    }
+
+    /// Points that the surrogate calls unstable and the model does not.
+    pub fn falsely_unstable(&self) -> u64 {
+        self.verdicts.of_unstable().falsely_stable
     }
 
     /// Share of points on whose stability the two disagree, in percent.
     pub fn misclassified_percent(&self) -> f64 {
-        100.0 * (self.falsely_stable + self.falsely_unstable) as f64 / self.samples as f64
+        let all = self.falsely_stable() + self.falsely_marginal() + self.falsely_unstable();
+        100.0 * all as f64 / self.samples as f64
     }
 }
 
@@ -117,7 +235,8 @@ pub fn compare_with_model<'a>(
     let matching = Matching::new(surrogate, study.spectrum.target);
     for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs| {
         let block = surrogate_block(surrogate, &plan, points)?;
-        comparison.classify(runs.iter().map(|run| run.spectrum.max_re()), &block);
+        comparison.classify(surrogate, runs.iter().map(|run| Judged::of(&run.spectrum)), &block);
+        comparison.rigid_body_modes = runs.first().map_or(0, |run| run.spectrum.rigid_body_modes());
         let spectra: Vec<&Spectrum> = runs.iter().map(|run| &run.spectrum).collect();
         comparison.merge(errors(surrogate, &matching, &spectra, &block));
         Ok(())
@@ -128,25 +247,12 @@ pub fn compare_with_model<'a>(
 impl Comparison {
     /// Nothing compared yet, of so many points.
     pub(super) fn new(samples: u64) -> Self {
-        Self {
-            samples,
-            stable_model: 0,
-            stable_surrogate: 0,
-            falsely_stable: 0,
-            falsely_unstable: 0,
-            components: Vec::new(),
-        }
+        Self { samples, verdicts: Verdicts::default(), rigid_body_modes: 0, components: Vec::new() }
     }
 
-    /// Counts on whose stability model, with this max Re λ at each point, and surrogate disagree.
-    pub(super) fn classify(&mut self, max_re: impl Iterator<Item = f64>, block: &Block) {
-        for (model, &found) in max_re.zip(&block.max_re) {
-            let (model, found) = (model < 0.0, found < 0.0);
-            self.stable_model += u64::from(model);
-            self.stable_surrogate += u64::from(found);
-            self.falsely_stable += u64::from(found && !model);
-            self.falsely_unstable += u64::from(model && !found);
-        }
+    /// Counts on whose stability model and surrogate disagree.
+    pub(super) fn classify(&mut self, surrogate: &Surrogate, model: impl Iterator<Item = Judged>, block: &Block) {
+        self.verdicts.classify(surrogate, model, block);
     }
 
     pub(super) fn merge(&mut self, errors: Vec<ComponentError>) {
@@ -212,7 +318,8 @@ fn errors_of_labels(
             surrogate: Moments::of(
                 &matched.iter().map(|(i, _)| part(&block.eigenvalues[position][*i])).collect::<Vec<_>>(),
             ),
-            scale: 0.0,
+            // Growth rates of undamped modes are rounding beside their frequencies.
+            scale: matched.iter().map(|(_, lambdas)| lambdas[position].norm()).fold(0.0, f64::max),
         };
         let growth_rate = error(label.growth_rate(), |lambda| lambda.re);
         match label {

@@ -128,6 +128,10 @@ pub struct Reference {
     pub outputs: Vec<Output>,
     /// Statistics.
     pub summary: Summary,
+    /// Number of eigenvalues that are rigid-body motion.
+    pub rigid_body_modes: usize,
+    /// Whether all eigenvalues lie on the imaginary axis or symmetric to it, at every point.
+    pub is_undamped: bool,
 }
 
 /// Statistics of the model itself on samples 0 … `samples` − 1 under `seed`, the paper's MCIM, on the current rayon
@@ -149,7 +153,7 @@ pub fn monte_carlo<'a>(
             let ranks = Ranks::of(campaign.study, runs.first());
             let outputs = mode_outputs(ranks.modes());
             let summary = Summary::new(2 * outputs.len(), outputs.len());
-            (Reference { outputs, summary }, ranks)
+            (Reference { outputs, summary, rigid_body_modes: 0, is_undamped: true }, ranks)
         });
         if !ranks.hold_for(runs) {
             ranks.give_up();
@@ -157,13 +161,17 @@ pub fn monte_carlo<'a>(
             reference.summary.components.clear();
             reference.summary.eigenvalues.clear();
         }
+        reference.rigid_body_modes = runs.first().map_or(0, |run| run.spectrum.rigid_body_modes());
+        reference.is_undamped = reference.is_undamped && runs.iter().all(|run| run.spectrum.is_undamped());
         let mut block = Block::with_capacity(2 * ranks.modes().len(), ranks.modes().len(), runs.len());
         for run in runs {
             let lambdas = ranks.eigenvalues(&run.spectrum);
             let components: Vec<f64> = lambdas.iter().flat_map(|lambda| [lambda.re, lambda.im]).collect();
             block.push(&components, &lambdas, run.spectrum.top());
         }
-        reference.summary.merge(&Summary::of(&block, [0.0; 2]));
+        // What cannot be told from zero is zero in a spectrum.
+        let margin = campaign.study.spectrum.margin;
+        reference.summary.merge(&Summary::of(&block, margin, 0.0, [0.0; 2]));
         Ok(())
     })?;
     reference.map(|(reference, _)| reference).ok_or(ReferenceError::NoSamples)

@@ -9,7 +9,7 @@ use crate::campaign::{Campaign, Run, RunError, Runner, agree_on_rigid_body_motio
 use crate::mechanics::spectrum::{Labels, Modes, Spectrum, SpectrumError, Target};
 use crate::study::Study;
 use nalgebra::Complex;
-use pcc_evaluate::components::Label;
+use pcc_evaluate::components::{Label, Top};
 use pcc_evaluate::foundation::Observer;
 
 /// What the model answers at a point.
@@ -17,8 +17,8 @@ use pcc_evaluate::foundation::Observer;
 pub struct PointAnswer {
     /// The eigenvalue of every label, in 1/s.
     pub eigenvalues: Vec<Complex<f64>>,
-    /// The eigenvalue with the largest Re λ of all.
-    pub top: Complex<f64>,
+    /// What decides on stability.
+    pub top: Top,
 }
 
 /// Runs the model of a study at points that somebody gives.
@@ -98,6 +98,7 @@ impl<'a> PointReference<'a> {
         let listed = |mode: usize| match &self.study.spectrum.modes {
             Modes::All => true,
             Modes::Ranks(modes) => modes.contains(&mode),
+            band @ Modes::Band(_) => band.has_frequency(lambdas[oscillating[mode - 1]]),
         };
         if let Modes::Ranks(modes) = &self.study.spectrum.modes
             && let Some(&mode) = modes.iter().find(|&&mode| mode > oscillating.len())
@@ -108,7 +109,7 @@ impl<'a> PointReference<'a> {
         }
         let is_real = |run: &Run| run.spectrum.eigenvalues().iter().any(|lambda| lambda.im == 0.0);
         let has_reals = !reals.is_empty() || first.iter().any(is_real);
-        for (mode, at) in (1..).zip(oscillating).filter(|(mode, _)| listed(*mode)) {
+        for (mode, at) in (1..).zip(oscillating.iter().copied()).filter(|(mode, _)| listed(*mode)) {
             let both = (at, spectrum.conjugate(at));
             labels.push(Label::Mode(mode));
             positions.push(both);
@@ -117,7 +118,11 @@ impl<'a> PointReference<'a> {
                 positions.push((both.1, both.0));
             }
         }
-        if self.study.spectrum.modes == Modes::All {
+        let has_reals = match &self.study.spectrum.modes {
+            Modes::Ranks(_) => false,
+            modes => modes.has_frequency(Complex::default()),
+        };
+        if has_reals {
             labels.extend((1..=reals.len()).map(Label::Real));
             positions.extend(reals.into_iter().map(|at| (at, at)));
         }

@@ -1,6 +1,6 @@
 //! Direct computations that are kept, so that many surrogates can be judged on the same points for the price of one.
 
-use super::compare::{Comparison, eigenvalue_errors};
+use super::compare::{Comparison, Judged, eigenvalue_errors};
 use super::direct_computations::{Ranks, ReferenceError, for_each_chunk, surrogate_block};
 use super::matching::Matching;
 use crate::campaign::Campaign;
@@ -33,6 +33,9 @@ pub struct ModelSample<'a> {
     ends: Vec<usize>,
     /// max Re λ at every point, over all eigenvalues but rigid-body motion.
     max_re: Vec<f64>,
+    /// What the model says of stability at every point.
+    judged: Vec<Judged>,
+    rigid_body_modes: usize,
 }
 
 impl<'a> ModelSample<'a> {
@@ -58,6 +61,8 @@ impl<'a> ModelSample<'a> {
             halves: Vec::new(),
             ends: Vec::new(),
             max_re: Vec::new(),
+            judged: Vec::new(),
+            rigid_body_modes: 0,
         };
         for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs| {
             let ranks = ranks.get_or_insert_with(|| {
@@ -73,6 +78,8 @@ impl<'a> ModelSample<'a> {
                 sample.halves.extend(run.spectrum.halves());
                 sample.ends.push(sample.halves.len());
                 sample.max_re.push(run.spectrum.max_re());
+                sample.judged.push(Judged::of(&run.spectrum));
+                sample.rigid_body_modes = run.spectrum.rigid_body_modes();
                 let lambdas = ranks.eigenvalues(&run.spectrum);
                 sample.eigenvalues.iter_mut().zip(lambdas).for_each(|(list, lambda)| list.push(lambda));
             }
@@ -142,9 +149,10 @@ impl<'a> ModelSample<'a> {
     pub fn compare(&self, surrogate: &Surrogate) -> Result<Comparison, ReferenceError> {
         let plan = Plan::new(surrogate);
         let mut comparison = Comparison::new(self.len() as u64);
+        comparison.rigid_body_modes = self.rigid_body_modes;
         let matching = Matching::new(surrogate, self.study.spectrum.target);
         let listed: Option<Vec<String>> = match &self.study.spectrum.modes {
-            Modes::All => None,
+            Modes::All | Modes::Band(_) => None,
             Modes::Ranks(modes) => {
                 Some(modes.iter().flat_map(|mode| ["re", "im"].map(|p| format!("{p}_{mode}"))).collect())
             }
@@ -153,7 +161,7 @@ impl<'a> ModelSample<'a> {
         let has_names = self.study.spectrum.target == Target::Invariants || !self.modes.is_empty();
         self.for_each_block(surrogate, &plan, self.len(), |start, block| {
             let range = start..start + block.max_re.len();
-            comparison.classify(self.max_re[range.clone()].iter().copied(), &block);
+            comparison.classify(surrogate, self.judged[range.clone()].iter().copied(), &block);
             if !has_names {
                 return;
             }

@@ -45,6 +45,21 @@ pub enum StudyError {
         /// What it must be.
         expected: String,
     },
+    /// Two ways to say which modes.
+    #[error("{place}: spectrum.modes chooses modes, too; remove one of them")]
+    TwoSelections {
+        /// Where.
+        place: Place,
+    },
+    /// A band of frequencies for modes that have ranks.
+    #[error(
+        "{place}: with target = \"eigenvalues\" modes are frequency ranks, which spectrum.modes lists; use that, or target = \
+         \"invariants\""
+    )]
+    BandOfRanks {
+        /// Where.
+        place: Place,
+    },
     /// A word that is not among the known ones.
     #[error("{place}: \"{found}\" is not known; choose {expected}")]
     UnknownWord {

@@ -6,6 +6,7 @@ use super::Study;
 use super::model::identity;
 use crate::fitting::fit::method::Value;
 use crate::mechanics::spectrum::{Modes, Target};
+use pcc_evaluate::components::Margin;
 use pcc_evaluate::foundation::{sha256, sha256_bytes};
 
 pub(super) fn problem_hash(study: &Study) -> String {
@@ -60,6 +61,22 @@ fn problem(study: &Study) -> String {
         Modes::All => text.push_str("modes all\n"),
         Modes::Ranks(ranks) => {
             let _ = writeln!(text, "modes {ranks:?}");
+        }
+        Modes::Band([lower, upper]) => {
+            let _ = writeln!(text, "frequencies {lower:?} {upper:?}");
+        }
+    }
+    // What has its default says nothing, so that studies keep their hash.
+    if let Some(count) = study.spectrum.rigid_body_modes {
+        let _ = writeln!(text, "rigid-body modes {count}");
+    }
+    match study.spectrum.margin {
+        margin if margin.is_none() => {}
+        Margin::GrowthRate(rate) => {
+            let _ = writeln!(text, "margin {rate:?}");
+        }
+        Margin::DampingRatio(ratio) => {
+            let _ = writeln!(text, "margin of the damping ratio {ratio:?}");
         }
     }
     text

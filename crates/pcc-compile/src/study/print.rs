@@ -6,6 +6,7 @@ use super::model::{self, unit_of};
 use super::{DesignKind, STUDY_FORMAT, Study};
 use crate::fitting::fit::method::{Design, MethodSetting, Value};
 use crate::mechanics::spectrum::{Modes, Target};
+use pcc_evaluate::components::Margin;
 
 /// Column at which explanations start.
 const COMMENT_COLUMN: usize = 34;
@@ -22,13 +23,31 @@ pub(super) fn study(study: &Study) -> String {
     let modes = match &study.spectrum.modes {
         Modes::All => "\"all\"".to_owned(),
         Modes::Ranks(ranks) => format!("{ranks:?}"),
+        Modes::Band(_) => String::new(),
     };
     let expanded = match study.spectrum.target {
         Target::Eigenvalues => "what is expanded: Re and Im of each mode",
         Target::Invariants => "what is expanded: symmetric functions of modes that come close",
     };
     file.line("target", format!("{:?}", study.spectrum.target.name()), expanded);
-    file.line("modes", modes, "by frequency rank from 1, or \"all\" that oscillate");
+    match study.spectrum.modes {
+        Modes::Band([lower, upper]) => {
+            let band = format!("[{}, {}]", float(lower), float(upper));
+            file.line("frequencies", band, "modes by their frequency in the middle of the inputs, in Hz");
+        }
+        _ => file.line("modes", modes, "by frequency rank from 1, or \"all\" that oscillate"),
+    }
+    if let Some(count) = study.spectrum.rigid_body_modes {
+        file.line("rigid_body_modes", count, "eigenvalues that are zero: the body is free to move");
+    }
+    match study.spectrum.margin {
+        margin if margin.is_none() => {}
+        Margin::GrowthRate(rate) => file.line("margin", float(rate), "1/s; stable means Re λ below minus this"),
+        Margin::DampingRatio(ratio) => {
+            let text = format!("{{ damping_ratio = {} }}", float(ratio));
+            file.line("margin", text, "stable means every damping ratio above this");
+        }
+    }
 
     file.table("design");
     let kind = match study.design.kind {

@@ -123,6 +123,32 @@ pub(super) struct Input {
 pub(super) struct Spectrum {
     pub target: Option<Spanned<String>>,
     pub modes: Option<Spanned<Modes>>,
+    pub frequencies: Option<Spanned<Vec<f64>>>,
+    pub rigid_body_modes: Option<Spanned<i64>>,
+    pub margin: Option<Spanned<Margin>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a margin is a growth rate in 1/s, or { damping_ratio = 0.005 }, or { log_decrement = 0.03 }, one of them"
+)]
+pub(super) enum Margin {
+    GrowthRate(f64),
+    DampingRatio(DampingRatio),
+    LogDecrement(LogDecrement),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DampingRatio {
+    pub damping_ratio: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LogDecrement {
+    pub log_decrement: f64,
 }
 
 #[derive(Debug, Deserialize)]

@@ -3,6 +3,7 @@
 use super::model::ModelSettings;
 use crate::fitting::fit::FitMethod;
 use crate::mechanics::spectrum::{Modes, Target};
+use pcc_evaluate::components::Margin;
 
 /// What of the spectrum is expanded.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +12,10 @@ pub struct SpectrumSettings {
     pub target: Target,
     /// Which modes.
     pub modes: Modes,
+    /// Number of eigenvalues that are rigid-body motion, if the study says it.
+    pub rigid_body_modes: Option<usize>,
+    /// How far eigenvalues must stay from instability.
+    pub margin: Margin,
 }
 
 /// How design points are chosen.

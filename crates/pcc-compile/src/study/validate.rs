@@ -11,7 +11,7 @@ use super::settings::{DesignKind, DesignSettings, FitSettings, SpectrumSettings}
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::mechanics::model::Parameter;
 use crate::mechanics::spectrum::{Modes, Target};
-use pcc_evaluate::components::is_result_column;
+use pcc_evaluate::components::{Margin, is_result_column};
 use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
 
 /// Design sizes above this need more memory for the regression than a workstation has.
@@ -23,6 +23,9 @@ const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
 /// Values and derivatives that a minimum-norm fit may take: matrices of half a gigabyte.
 const MOST_EQUATIONS: usize = 8_000;
+
+/// Rigid-body motion that a study may ask for: more than the largest model has.
+const MOST_RIGID: usize = 2_000;
 
 /// Univariate polynomial values that a design may need: two gigabytes.
 const LARGEST_TABLES: usize = 250_000_000;
@@ -205,11 +208,71 @@ impl Lines<'_> {
             Some(word) => self.word("spectrum.target", &word, &TARGETS.map(|target| (target.name(), target)))?,
             None => kind.default_target(),
         };
-        let modes = match raw.modes {
-            Some(modes) => self.modes(modes)?,
-            None => defaults::MODES,
+        let modes = match (raw.modes, raw.frequencies) {
+            (Some(modes), None) => self.modes(modes)?,
+            (None, Some(band)) => self.band(band, target)?,
+            (None, None) => defaults::MODES,
+            (Some(_), Some(band)) => {
+                let place = self.place("spectrum.frequencies", &band);
+                return Err(StudyError::TwoSelections { place });
+            }
         };
-        Ok(SpectrumSettings { target, modes })
+        let rigid_body_modes = raw.rigid_body_modes.map(|count| self.rigid_body_modes(count)).transpose()?;
+        let margin = raw.margin.map(|margin| self.margin(margin)).transpose()?.unwrap_or_default();
+        Ok(SpectrumSettings { target, modes, rigid_body_modes, margin })
+    }
+
+    fn band(&self, raw: Spanned<Vec<f64>>, target: Target) -> Result<Modes, StudyError> {
+        let place = self.place("spectrum.frequencies", &raw);
+        if target == Target::Eigenvalues {
+            return Err(StudyError::BandOfRanks { place });
+        }
+        match raw.into_inner()[..] {
+            [lower, upper] if lower >= 0.0 && lower < upper && upper.is_finite() => Ok(Modes::Band([lower, upper])),
+            ref other => Err(StudyError::OutOfRange {
+                place,
+                found: format!("{other:?}"),
+                expected: "a lower and a higher frequency in Hz, like [100.0, 5000.0]".to_owned(),
+            }),
+        }
+    }
+
+    fn rigid_body_modes(&self, raw: Spanned<i64>) -> Result<usize, StudyError> {
+        let place = self.place("spectrum.rigid_body_modes", &raw);
+        let found = raw.into_inner();
+        let expected = "the number of eigenvalues that are rigid-body motion, two for a body that is free to move in one \
+                        direction";
+        usize::try_from(found).ok().filter(|&count| count <= MOST_RIGID).ok_or_else(|| StudyError::OutOfRange {
+            place,
+            found: found.to_string(),
+            expected: format!("{expected}, at most {MOST_RIGID}"),
+        })
+    }
+
+    fn margin(&self, raw: Spanned<raw::Margin>) -> Result<Margin, StudyError> {
+        let place = self.place("spectrum.margin", &raw);
+        let wrong = |found: f64, expected: &str| StudyError::OutOfRange {
+            place,
+            found: format!("{found:?}"),
+            expected: expected.to_owned(),
+        };
+        match raw.into_inner() {
+            raw::Margin::GrowthRate(rate) if rate >= 0.0 && rate.is_finite() => Ok(Margin::GrowthRate(rate)),
+            raw::Margin::GrowthRate(rate) => Err(wrong(rate, "a growth rate in 1/s that is not negative")),
+            raw::Margin::DampingRatio(raw::DampingRatio { damping_ratio: 0.0 })
+            | raw::Margin::LogDecrement(raw::LogDecrement { log_decrement: 0.0 }) => Ok(Margin::default()),
+            raw::Margin::DampingRatio(raw::DampingRatio { damping_ratio: ratio }) => match ratio > 0.0 && ratio < 1.0 {
+                true => Ok(Margin::DampingRatio(ratio)),
+                false => Err(wrong(ratio, "a damping ratio from 0, below 1")),
+            },
+            raw::Margin::LogDecrement(raw::LogDecrement { log_decrement: decrement }) => {
+                match decrement > 0.0 && decrement.is_finite() {
+                    // δ = 2πζ/√(1 − ζ²)
+                    true => Ok(Margin::DampingRatio(decrement / decrement.hypot(std::f64::consts::TAU))),
+                    false => Err(wrong(decrement, "a logarithmic decrement that is not negative")),
+                }
+            }
+        }
     }
 
     fn modes(&self, raw: Spanned<raw::Modes>) -> Result<Modes, StudyError> {

@@ -2,7 +2,7 @@
 
 use super::error::{ReadError, WriteError};
 use super::v1::Document;
-use super::v2::AnyOutputs;
+use super::v2::{AnyCertificates, AnyOutputs};
 use crate::foundation::sha256;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian, standard};
 use serde::Serialize;
@@ -51,7 +51,7 @@ pub(super) const SECTION_NAMES: [&str; 10] = [
 /// Kind of the section of outputs, which has two versions.
 pub(super) const OUTPUTS: u16 = 3;
 
-/// Kind of the optional section of certificates.
+/// Kind of the optional section of certificates, which has two versions.
 pub(super) const CERTIFICATES: u16 = 9;
 
 /// Kind of the section of the verdict, which readers must understand where it is there.
@@ -82,7 +82,10 @@ pub(super) fn sections(document: &Document) -> Result<Vec<Section>, WriteError> 
     let mut sections = vec![section(1, &document.meta)?];
     sections.append(&mut content_sections(document)?);
     if let Some(certificates) = &document.certificates {
-        sections.push(section(CERTIFICATES, certificates)?);
+        sections.push(match certificates {
+            AnyCertificates::V1(certificates) => section(CERTIFICATES, certificates)?,
+            AnyCertificates::V2(certificates) => Section { version: 2, ..section(CERTIFICATES, certificates)? },
+        });
     }
     sections.sort_by_key(|section| section.kind);
     Ok(sections)

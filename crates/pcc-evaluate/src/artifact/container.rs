@@ -3,7 +3,7 @@
 use super::binary::{CERTIFICATES, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, sections};
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
-use super::v2::AnyOutputs;
+use super::v2::{AnyCertificates, AnyOutputs};
 use super::version::{Compatibility, MAJOR, compatibility};
 use serde::de::DeserializeOwned;
 
@@ -84,7 +84,10 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         training: sections.required(6)?,
         decision: sections.required(7)?,
         self_test: sections.required(8)?,
-        certificates: sections.optional(CERTIFICATES)?,
+        certificates: match sections.version_of(CERTIFICATES) {
+            2 => sections.optional(CERTIFICATES)?.map(AnyCertificates::V2),
+            _ => sections.optional(CERTIFICATES)?.map(AnyCertificates::V1),
+        },
         verdict: sections.optional(VERDICT)?,
     };
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
@@ -92,7 +95,7 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
 
 /// The latest version of a section that this code knows.
 fn latest_version(kind: u16) -> u16 {
-    if kind == OUTPUTS { 2 } else { 1 }
+    if kind == OUTPUTS || kind == CERTIFICATES { 2 } else { 1 }
 }
 
 /// The sections of a file by kind.

@@ -3,12 +3,12 @@
 use super::error::ReadError;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
 use super::{v1, v2};
-use crate::components::{Component, Output, OutputKind};
+use crate::components::{Component, Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
 use crate::surrogate::{
-    Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
-    StopReason, Surrogate, Training, VerdictBasis,
+    Band, Certificate, Counts, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest, Setting,
+    SettingValue, StopReason, Surrogate, Training, VerdictBasis,
 };
 
 /// Degrees above this are refused, so that a forged index cannot exhaust memory.
@@ -297,7 +297,29 @@ fn training(training: v1::Training) -> Result<Training, ReadError> {
 
 fn verdict(stored: Option<v2::Verdict>) -> Result<VerdictBasis, ReadError> {
     let Some(stored) = stored else { return Ok(VerdictBasis::default()) };
-    let verdict = VerdictBasis { rigid_body_modes: stored.rigid_body_modes as usize };
+    let value = stored.margin.value;
+    let is_margin = match stored.margin.kind {
+        v2::MarginKind::GrowthRate => value >= 0.0,
+        v2::MarginKind::DampingRatio => value > 0.0 && value < 1.0,
+    };
+    ensure("verdict", is_margin, || format!("its margin is {value}"))?;
+    ensure("verdict", stored.tolerance >= 0.0, || format!("its tolerance is {}", stored.tolerance))?;
+    let is_band = |band: &v2::Band| band.lower >= 0.0 && band.lower < band.upper;
+    ensure("verdict", stored.band.as_ref().is_none_or(is_band), || "its band is empty".to_owned())?;
+    let verdict = VerdictBasis {
+        rigid_body_modes: stored.rigid_body_modes as usize,
+        margin: match stored.margin.kind {
+            v2::MarginKind::GrowthRate => Margin::GrowthRate(value),
+            v2::MarginKind::DampingRatio => Margin::DampingRatio(value),
+        },
+        tolerance: stored.tolerance,
+        band: stored.band.map(|band| Band {
+            lower: band.lower,
+            upper: band.upper,
+            modes: band.modes as usize,
+            reals: band.reals as usize,
+        }),
+    };
     ensure("verdict", verdict != VerdictBasis::default(), || "it says nothing, and should not be there".to_owned())?;
     Ok(verdict)
 }
@@ -333,21 +355,27 @@ fn self_test(section: v1::SelfTest, inputs: &InputSpace, components: usize) -> R
     })
 }
 
-fn certificates(section: Option<v1::Certificates>) -> Result<Vec<Certificate>, ReadError> {
+fn certificates(section: Option<v2::AnyCertificates>) -> Result<Vec<Certificate>, ReadError> {
     let Some(section) = section else { return Ok(Vec::new()) };
-    ensure("certificates", !section.certificates.is_empty(), || "the section is there but empty".to_owned())?;
-    section.certificates.into_iter().map(certificate).collect()
+    let certificates = section.into_latest();
+    ensure("certificates", !certificates.is_empty(), || "the section is there but empty".to_owned())?;
+    certificates.into_iter().map(certificate).collect()
 }
 
-fn certificate(certificate: v1::Certificate) -> Result<Certificate, ReadError> {
-    let v1::Certificate { level, lower, upper, samples, .. } = certificate;
+fn certificate(certificate: v2::Certificate) -> Result<Certificate, ReadError> {
+    let v2::Certificate { level, lower, upper, samples, .. } = certificate;
     let discordant = certificate.falsely_stable.checked_add(certificate.falsely_unstable);
-    let sensible = level > 0.0
+    let is_bound = |lower: f64, upper: f64| 0.0 <= lower && lower <= upper && upper <= 1.0;
+    let are_bounds = |bounds: &v2::MarginalBounds| {
+        is_bound(bounds.marginal_lower, bounds.marginal_upper)
+            && is_bound(bounds.unstable_lower, bounds.unstable_upper)
+            && bounds.falsely_marginal <= samples
+    };
+    let sensible = 0.0 < level
         && level < 1.0
-        && 0.0 <= lower
-        && lower <= upper
-        && upper <= 1.0
-        && discordant.is_some_and(|count| count <= samples)
+        && is_bound(lower, upper)
+        && discordant.is_some_and(|discordant| discordant <= samples)
+        && certificate.marginal.as_ref().is_none_or(are_bounds)
         && is_hash(&certificate.problem_hash);
     ensure("certificates", sensible, || "level, bound, counts or hash are out of range".to_owned())?;
     Ok(Certificate {
@@ -359,6 +387,11 @@ fn certificate(certificate: v1::Certificate) -> Result<Certificate, ReadError> {
         level,
         lower,
         upper,
+        marginal: certificate.marginal.map(|bounds| MarginalBounds {
+            falsely_marginal: bounds.falsely_marginal,
+            marginal: [bounds.marginal_lower, bounds.marginal_upper],
+            unstable: [bounds.unstable_lower, bounds.unstable_upper],
+        }),
         problem_hash: certificate.problem_hash,
     })
 }

@@ -2,10 +2,11 @@
 
 use super::error::ReadError;
 use super::v1::{self, Document};
+use super::v2;
 
 /// The first section that holds a NaN or an infinity.
 pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
-    let sections: [(&str, Vec<f64>); 8] = [
+    let sections: [(&str, Vec<f64>); 9] = [
         ("inputs", document.inputs.inputs.iter().flat_map(input).collect()),
         ("outputs", document.outputs.components().flat_map(|component| [component.center, component.scale]).collect()),
         ("elements", elements(&document.elements)),
@@ -15,8 +16,15 @@ pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
         ("self_test", self_test(&document.self_test)),
         (
             "certificates",
-            document.certificates.iter().flat_map(|all| &all.certificates).flat_map(certificate).collect(),
+            document
+                .certificates
+                .iter()
+                .cloned()
+                .flat_map(v2::AnyCertificates::into_latest)
+                .flat_map(certificate)
+                .collect(),
         ),
+        ("verdict", document.verdict.iter().flat_map(verdict).collect()),
     ];
     sections.into_iter().find(|(_, numbers)| numbers.iter().any(|number| !number.is_finite())).map(|(name, _)| name)
 }
@@ -69,8 +77,16 @@ fn self_test(self_test: &v1::SelfTest) -> Vec<f64> {
     lists.chain(&self_test.max_re).copied().chain([self_test.tolerance]).collect()
 }
 
-fn certificate(certificate: &v1::Certificate) -> [f64; 3] {
-    [certificate.level, certificate.lower, certificate.upper]
+fn certificate(certificate: v2::Certificate) -> Vec<f64> {
+    let others = certificate.marginal.iter().flat_map(|bounds| {
+        [bounds.marginal_lower, bounds.marginal_upper, bounds.unstable_lower, bounds.unstable_upper]
+    });
+    [certificate.level, certificate.lower, certificate.upper].into_iter().chain(others).collect()
+}
+
+fn verdict(verdict: &v2::Verdict) -> Vec<f64> {
+    let band = verdict.band.iter().flat_map(|band| [band.lower, band.upper]);
+    [verdict.tolerance, verdict.margin.value].into_iter().chain(band).collect()
 }
 
 /// Fails with `message` unless `holds`.

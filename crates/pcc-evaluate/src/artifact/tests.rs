@@ -2,8 +2,8 @@
 
 use super::error::{ReadError, WriteError};
 use super::{Format, binary, container, decode, encode, from_v1, json, to_v1, v1, v2};
-use crate::components::OutputKind;
-use crate::surrogate::{Certificate, Surrogate, VerdictBasis};
+use crate::components::{Margin, OutputKind};
+use crate::surrogate::{Band, Certificate, MarginalBounds, Surrogate, VerdictBasis};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
@@ -290,16 +290,24 @@ fn closed_outputs_come_back_in_both_forms() {
     }
 }
 
-/// The same surrogate of a system that moves as a rigid body.
-static FREE: LazyLock<Surrogate> =
-    LazyLock::new(|| Surrogate { verdict: VerdictBasis { rigid_body_modes: 2 }, ..SURROGATE.clone() });
+/// What a verdict can rest on.
+static JUDGED: LazyLock<[Surrogate; 3]> = LazyLock::new(|| {
+    let band = Band { lower: 0.0, upper: 500.0, modes: 6, reals: 1 };
+    let bases = [
+        VerdictBasis { rigid_body_modes: 2, ..VerdictBasis::default() },
+        VerdictBasis { margin: Margin::GrowthRate(0.5), tolerance: 1e-9, ..VerdictBasis::default() },
+        VerdictBasis { margin: Margin::DampingRatio(0.01), band: Some(band), ..VerdictBasis::default() },
+    ];
+    bases.map(|verdict| Surrogate { verdict, ..SURROGATE.clone() })
+});
 
 #[test]
 fn the_basis_of_the_verdict_comes_back_in_both_forms_and_belongs_to_the_content() {
-    for format in [Format::Binary, Format::Json] {
-        let bytes = encode(&FREE, format).unwrap();
+    for (surrogate, format) in JUDGED.iter().flat_map(|one| [Format::Binary, Format::Json].map(|format| (one, format)))
+    {
+        let bytes = encode(surrogate, format).unwrap();
         let artifact = decode(&bytes).unwrap();
-        assert!(artifact.surrogate == *FREE && artifact.is_canonical && artifact.version == (1, 3));
+        assert!(artifact.surrogate == *surrogate && artifact.is_canonical && artifact.version == (1, 3));
         assert_eq!(encode(&artifact.surrogate, format).unwrap(), bytes);
         assert_ne!(artifact.content_id, decode(&BYTES).unwrap().content_id);
     }
@@ -307,22 +315,38 @@ fn the_basis_of_the_verdict_comes_back_in_both_forms_and_belongs_to_the_content(
 
 #[test]
 fn verdicts_that_make_no_sense() {
-    let nothing = v2::Verdict { rigid_body_modes: 0 };
-    assert_eq!(section_of(meaning(|d| d.verdict = Some(nothing))), "verdict");
+    use v2::MarginKind::{DampingRatio, GrowthRate};
+    let margin = |kind, value| v2::Margin { kind, value };
+    let nothing = v2::Verdict { rigid_body_modes: 0, tolerance: 0.0, margin: margin(GrowthRate, 0.0), band: None };
+    let band = |lower, upper| Some(v2::Band { lower, upper, modes: 4, reals: 0 });
+    let senseless = [
+        nothing,
+        v2::Verdict { margin: margin(GrowthRate, -1.0), ..nothing },
+        v2::Verdict { margin: margin(DampingRatio, 0.0), ..nothing },
+        v2::Verdict { margin: margin(DampingRatio, 1.0), ..nothing },
+        v2::Verdict { tolerance: -1e-9, ..nothing },
+        v2::Verdict { band: band(2.0, 1.0), ..nothing },
+        v2::Verdict { band: band(-2.0, 1.0), ..nothing },
+    ];
+    for verdict in senseless {
+        assert_eq!(section_of(meaning(|d| d.verdict = Some(verdict))), "verdict", "{verdict:?}");
+    }
+    // Two rigid-body modes, no tolerance, no margin, no band.
+    let body = [2u32.to_le_bytes().as_slice(), &[0; 8], &[0; 4], &[0; 8], &[0]].concat();
     // Readers must understand it: it cannot be optional, nor of a later version, nor of another length.
-    let optional = forged(|bytes| bytes.extend(section(10, 0, &2u32.to_le_bytes())));
+    let optional = forged(|bytes| bytes.extend(section(10, 0, &body)));
     assert!(matches!(decode(&optional), Err(ReadError::SectionTable(_))));
     let later = forged(|bytes| {
-        let mut later = section(10, 1, &2u32.to_le_bytes());
+        let mut later = section(10, 1, &body);
         later[2] = 2;
         bytes.extend(later);
     });
     assert!(matches!(decode(&later), Err(ReadError::UnknownSection { kind: 10, version: 2, .. })));
-    let long = forged(|bytes| bytes.extend(section(10, 1, &[0; 5])));
+    let long = forged(|bytes| bytes.extend(section(10, 1, &[0; 26])));
     assert_eq!(decode(&long), Err(ReadError::TrailingBytes { section: "verdict", bytes: 1 }));
-    let short = forged(|bytes| bytes.extend(section(10, 1, &[0; 3])));
+    let short = forged(|bytes| bytes.extend(section(10, 1, &[0; 24])));
     assert!(matches!(decode(&short), Err(ReadError::Decode { section: "verdict", .. })));
-    let added = forged(|bytes| bytes.extend(section(10, 1, &2u32.to_le_bytes())));
+    let added = forged(|bytes| bytes.extend(section(10, 1, &body)));
     assert_eq!(decode(&added), Err(ReadError::ContentId));
 }
 
@@ -388,7 +412,7 @@ fn histories_that_make_no_sense() {
     assert_eq!(section_of(meaning(|d| d.decision.proportion_error = Some(-1.0))), "decision");
     assert_eq!(section_of(meaning(|d| d.self_test.tolerance = 0.0)), "self_test");
     assert_eq!(section_of(meaning(|d| d.self_test.points[0].push(0.0))), "self_test");
-    let empty = v1::Certificates { certificates: Vec::new() };
+    let empty = v2::AnyCertificates::V1(v1::Certificates { certificates: Vec::new() });
     assert_eq!(section_of(meaning(|d| d.certificates = Some(empty))), "certificates");
 }
 
@@ -404,12 +428,21 @@ fn certificates_survive_and_stay_outside_the_content_id() {
         level: 0.95,
         lower: 0.18,
         upper: 0.22,
+        marginal: None,
         problem_hash: SURROGATE.provenance.problem_hash.clone(),
     });
+    let bounds = MarginalBounds { falsely_marginal: 1, marginal: [0.1, 0.2], unstable: [0.5, 0.75] };
+    let of_all_shares = Certificate { marginal: Some(bounds), ..certified.certificates[0].clone() };
+    let both = Surrogate { certificates: vec![certified.certificates[0].clone(), of_all_shares], ..certified.clone() };
     for format in [Format::Binary, Format::Json] {
         let artifact = decode(&encode(&certified, format).unwrap()).unwrap();
         assert_eq!(artifact.surrogate, certified);
         assert_eq!(artifact.content_id, decode(&BYTES).unwrap().content_id);
+        let artifact = decode(&encode(&both, format).unwrap()).unwrap();
+        assert!(artifact.surrogate == both && artifact.is_canonical && artifact.version == (1, 3));
+        let mut wrong = both.clone();
+        wrong.certificates[1].marginal = Some(MarginalBounds { unstable: [0.75, 0.5], ..bounds });
+        assert_eq!(section_of(decode(&encode(&wrong, format).unwrap()).unwrap_err()), "certificates");
         certified.certificates[0].upper = 2.0;
         assert_eq!(section_of(decode(&encode(&certified, format).unwrap()).unwrap_err()), "certificates");
         certified.certificates[0].upper = 0.22;

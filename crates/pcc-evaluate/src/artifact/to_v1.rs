@@ -4,10 +4,12 @@ use super::error::WriteError;
 use super::meaning::not_finite;
 use super::version::{MAJOR, minor};
 use super::{binary, v1, v2};
-use crate::components::{Output, OutputKind};
+use crate::components::{Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh};
 use crate::probability::inputs::Marginal;
-use crate::surrogate::{Certificate, LeaveOut, SettingValue, StopReason, Surrogate, VerdictBasis};
+use crate::surrogate::{
+    Band, Certificate, LeaveOut, MarginalBounds, SettingValue, StopReason, Surrogate, VerdictBasis,
+};
 use std::collections::HashMap;
 
 pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
@@ -224,12 +226,34 @@ fn decision(surrogate: &Surrogate) -> v1::Decision {
 
 /// Nothing, if there is nothing to say.
 fn verdict(verdict: VerdictBasis) -> Option<v2::Verdict> {
-    let stored = v2::Verdict { rigid_body_modes: verdict.rigid_body_modes as u32 };
+    let (kind, value) = match verdict.margin {
+        Margin::GrowthRate(value) => (v2::MarginKind::GrowthRate, value),
+        Margin::DampingRatio(value) => (v2::MarginKind::DampingRatio, value),
+    };
+    let band = |band: Band| v2::Band {
+        lower: band.lower,
+        upper: band.upper,
+        modes: band.modes as u32,
+        reals: band.reals as u32,
+    };
+    let stored = v2::Verdict {
+        rigid_body_modes: verdict.rigid_body_modes as u32,
+        tolerance: verdict.tolerance,
+        margin: v2::Margin { kind, value },
+        band: verdict.band.map(band),
+    };
     (verdict != VerdictBasis::default()).then_some(stored)
 }
 
-fn certificates(certificates: &[Certificate]) -> Option<v1::Certificates> {
-    let certificate = |certificate: &Certificate| v1::Certificate {
+fn certificates(certificates: &[Certificate]) -> Option<v2::AnyCertificates> {
+    let bounds = |bounds: MarginalBounds| v2::MarginalBounds {
+        falsely_marginal: bounds.falsely_marginal,
+        marginal_lower: bounds.marginal[0],
+        marginal_upper: bounds.marginal[1],
+        unstable_lower: bounds.unstable[0],
+        unstable_upper: bounds.unstable[1],
+    };
+    let certificate = |certificate: &Certificate| v2::Certificate {
         seed: certificate.seed,
         samples: certificate.samples,
         scheme: certificate.scheme.clone(),
@@ -239,7 +263,7 @@ fn certificates(certificates: &[Certificate]) -> Option<v1::Certificates> {
         lower: certificate.lower,
         upper: certificate.upper,
         problem_hash: certificate.problem_hash.clone(),
+        marginal: certificate.marginal.map(bounds),
     };
-    (!certificates.is_empty())
-        .then(|| v1::Certificates { certificates: certificates.iter().map(certificate).collect() })
+    (!certificates.is_empty()).then(|| v2::AnyCertificates::of(certificates.iter().map(certificate).collect()))
 }

@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::v2::{AnyOutputs, Verdict};
+use super::v2::{AnyCertificates, AnyOutputs, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,7 +35,7 @@ pub struct Document {
     pub self_test: SelfTest,
     /// Section 9, absent if there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub certificates: Option<Certificates>,
+    pub certificates: Option<AnyCertificates>,
     /// Section 10, absent if stability is judged by the sign of Re λ alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,

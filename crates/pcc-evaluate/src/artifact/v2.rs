@@ -1,7 +1,7 @@
-//! Section 3 in version 2: outputs with eigenvalues that are real, or can become so. Section 10: what else there is to
-//! know of the verdict on stability.
+//! Section 3 in version 2: outputs with eigenvalues that are real, or can become so. Section 9 in version 2:
+//! certificates of systems that can be marginal. Section 10: what else there is to know of the verdict on stability.
 //!
-//! Files are written with version 1 of the section wherever that can say it. The rules of [`super::v1`] hold: a
+//! Files are written with version 1 of a section wherever that can say it. The rules of [`super::v1`] hold: a
 //! published body never changes.
 
 use super::v1;
@@ -21,12 +21,225 @@ pub enum AnyOutputs {
 }
 
 /// Section 10: what the verdict on stability rests on beside the sign of Re λ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Verdict {
     /// Number of eigenvalues of the model that are rigid-body motion: zero at every point, and left out of the verdict.
     pub rigid_body_modes: u32,
+    /// Excesses up to this, in 1/s, are zero: the point is marginal.
+    pub tolerance: f64,
+    /// How far eigenvalues must stay from instability.
+    pub margin: Margin,
+    /// The band of frequencies by which modes were chosen.
+    pub band: Option<Band>,
+}
+
+/// How far eigenvalues must stay from instability: the excess of λ is to be negative.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Margin {
+    /// What is added to Re λ.
+    pub kind: MarginKind,
+    /// How much.
+    pub value: f64,
+}
+
+/// What is added to Re λ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum MarginKind {
+    /// The value, in 1/s.
+    GrowthRate,
+    /// The value times |λ|.
+    DampingRatio,
+}
+
+/// A band of frequencies in the middle of the inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Band {
+    /// Lower end, in Hz.
+    pub lower: f64,
+    /// Upper end, in Hz.
+    pub upper: f64,
+    /// Number of modes of the model, inside and outside: they have the numbers from 1.
+    pub modes: u32,
+    /// Number of its real eigenvalues that belong to no mode.
+    pub reals: u32,
+}
+
+/// Certificates, in the version that says them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(untagged)]
+pub enum AnyCertificates {
+    /// Of the stability proportion alone.
+    V1(v1::Certificates),
+    /// Of all three shares.
+    V2(Certificates),
+}
+
+/// Section 9, version 2.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Certificates2"))]
+#[serde(deny_unknown_fields)]
+pub struct Certificates {
+    /// Oldest first.
+    pub certificates: Vec<Certificate>,
+}
+
+/// A verified bound, with those of the other shares where some points are marginal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Certificate2"))]
+#[serde(deny_unknown_fields)]
+pub struct Certificate {
+    /// Seed of its points.
+    pub seed: u64,
+    /// Number of fresh model runs.
+    pub samples: u64,
+    /// How the points were drawn.
+    pub scheme: String,
+    /// Points that the surrogate calls stable and the model does not.
+    pub falsely_stable: u64,
+    /// Points that the model calls stable and the surrogate does not.
+    pub falsely_unstable: u64,
+    /// Confidence level.
+    pub level: f64,
+    /// Lower end of the bound on the stability proportion.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+    /// Problem hash of the model that was run.
+    pub problem_hash: String,
+    /// What else it bounds.
+    pub marginal: Option<MarginalBounds>,
+}
+
+/// Bounds of the marginal and of the unstable share.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct MarginalBounds {
+    /// Points that the surrogate calls marginal and the model does not.
+    pub falsely_marginal: u64,
+    /// Lower end of the bound on the marginal share.
+    pub marginal_lower: f64,
+    /// Its upper end.
+    pub marginal_upper: f64,
+    /// Lower end of the bound on the unstable share.
+    pub unstable_lower: f64,
+    /// Its upper end.
+    pub unstable_upper: f64,
+}
+
+/// Certificates as JSON has them, in either version.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EitherCertificates {
+    certificates: Vec<EitherCertificate>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EitherCertificate {
+    seed: u64,
+    samples: u64,
+    scheme: String,
+    falsely_stable: u64,
+    falsely_unstable: u64,
+    level: f64,
+    lower: f64,
+    upper: f64,
+    problem_hash: String,
+    marginal: Option<MarginalBounds>,
+}
+
+impl<'de> Deserialize<'de> for AnyCertificates {
+    /// Version 2 is told by a certificate that says something of marginal points.
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let EitherCertificates { certificates } = EitherCertificates::deserialize(deserializer)?;
+        let latest = certificates.into_iter().map(|either| {
+            let EitherCertificate { seed, samples, scheme, level, lower, upper, problem_hash, marginal, .. } = either;
+            let EitherCertificate { falsely_stable, falsely_unstable, .. } = either;
+            let certificate = Certificate {
+                seed,
+                samples,
+                scheme,
+                falsely_stable,
+                falsely_unstable,
+                level,
+                lower,
+                upper,
+                problem_hash,
+                marginal,
+            };
+            certificate
+        });
+        Ok(Self::of(latest.collect()))
+    }
+}
+
+impl From<v1::Certificate> for Certificate {
+    fn from(certificate: v1::Certificate) -> Self {
+        let v1::Certificate {
+            seed,
+            samples,
+            scheme,
+            falsely_stable,
+            falsely_unstable,
+            level,
+            lower,
+            upper,
+            problem_hash,
+        } = certificate;
+        Self {
+            seed,
+            samples,
+            scheme,
+            falsely_stable,
+            falsely_unstable,
+            level,
+            lower,
+            upper,
+            problem_hash,
+            marginal: None,
+        }
+    }
+}
+
+impl AnyCertificates {
+    /// Certificates in the lowest version that says them.
+    pub(super) fn of(certificates: Vec<Certificate>) -> Self {
+        if certificates.iter().any(|certificate| certificate.marginal.is_some()) {
+            return Self::V2(Certificates { certificates });
+        }
+        let first_version = |certificate: Certificate| v1::Certificate {
+            seed: certificate.seed,
+            samples: certificate.samples,
+            scheme: certificate.scheme,
+            falsely_stable: certificate.falsely_stable,
+            falsely_unstable: certificate.falsely_unstable,
+            level: certificate.level,
+            lower: certificate.lower,
+            upper: certificate.upper,
+            problem_hash: certificate.problem_hash,
+        };
+        Self::V1(v1::Certificates { certificates: certificates.into_iter().map(first_version).collect() })
+    }
+
+    /// All certificates in the words of version 2.
+    pub(super) fn into_latest(self) -> Vec<Certificate> {
+        match self {
+            Self::V1(v1::Certificates { certificates }) => certificates.into_iter().map(Certificate::from).collect(),
+            Self::V2(Certificates { certificates }) => certificates,
+        }
+    }
 }
 
 /// Section 3, version 2.

@@ -7,6 +7,8 @@
 //!
 //! They are not centred on the mean: of a slow and a fast real eigenvalue the slow one is the product over the fast
 //! one, and keeps its digits.
+//!
+//! Where all odd functions are zero, the group is undamped.
 
 use super::roots::roots;
 use num_complex::Complex;
@@ -43,7 +45,10 @@ pub fn closed_eigenvalues(symmetric: &[f64], modes: usize, eigenvalues: &mut [Co
         [e_1] => eigenvalues[0] = Complex::new(e_1, 0.0),
         [e_1, e_2] => eigenvalues.copy_from_slice(&closed_pair(e_1, e_2)),
         _ => {
-            real_polynomial_roots(symmetric, eigenvalues);
+            match symmetric.iter().step_by(2).all(|&odd| odd == 0.0) {
+                true => undamped_eigenvalues(symmetric, eigenvalues),
+                false => real_polynomial_roots(symmetric, eigenvalues),
+            }
             in_order_of_labels(eigenvalues, modes);
         }
     }
@@ -65,7 +70,44 @@ pub fn closed_pair(e_1: f64, e_2: f64) -> [Complex<f64>; 2] {
     [Complex::new(larger, 0.0), Complex::new(smaller, 0.0)]
 }
 
+/// The roots where all odd functions are zero: those of an undamped system, which come as ±λ. They are found in λ²,
+/// so that what neither grows nor decays has Re λ = 0 exactly. In no order.
+fn undamped_eigenvalues(symmetric: &[f64], found: &mut [Complex<f64>]) {
+    let half = symmetric.len() / 2;
+    let (mut of_squares, mut squares) = ([0.0; MOST_IN_CLOSED_GROUP], [Complex::default(); MOST_IN_CLOSED_GROUP]);
+    for (m, of_squares) in of_squares[..half].iter_mut().enumerate() {
+        // The function of degree m + 1 in λ² is ±e of degree 2m + 2.
+        let even = symmetric[2 * m + 1];
+        *of_squares = if m % 2 == 0 { -even } else { even };
+    }
+    real_roots_or_pairs(&of_squares[..half], &mut squares[..half]);
+    for (pair, square) in found.chunks_exact_mut(2).zip(&squares[..half]) {
+        let root = if square.im != 0.0 {
+            square.sqrt()
+        } else if square.re < 0.0 {
+            Complex::new(0.0, (-square.re).sqrt())
+        } else {
+            Complex::new(square.re.sqrt(), 0.0)
+        };
+        // No −0, which is neither equal to its conjugate nor real.
+        let other = Complex::new(0.0 - root.re, 0.0 - root.im);
+        pair.copy_from_slice(&[root, other]);
+    }
+    if found.len() % 2 == 1 {
+        found[2 * half] = Complex::default();
+    }
+}
+
 /// The roots for e₁, …, eₙ, exactly conjugate or exactly real, in no order.
+pub(super) fn real_roots_or_pairs(symmetric: &[f64], found: &mut [Complex<f64>]) {
+    match *symmetric {
+        [e_1] => found[0] = Complex::new(e_1, 0.0),
+        [e_1, e_2] => found.copy_from_slice(&closed_pair(e_1, e_2)),
+        _ => real_polynomial_roots(symmetric, found),
+    }
+}
+
+/// The same of three or more.
 fn real_polynomial_roots(symmetric: &[f64], found: &mut [Complex<f64>]) {
     let mut coefficients = [Complex::default(); MOST_IN_CLOSED_GROUP];
     let coefficients = &mut coefficients[..symmetric.len()];

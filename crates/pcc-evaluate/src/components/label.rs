@@ -1,50 +1,6 @@
-//! Names of eigenvalues, and what they say of stability.
+//! Names of eigenvalues.
 
-use num_complex::Complex;
 use std::fmt;
-
-/// What the eigenvalue with the largest Re λ says of a system.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Verdict {
-    /// Re λ < 0.
-    Stable,
-    /// Re λ ≥ 0, and it oscillates.
-    Flutter,
-    /// λ ≥ 0, and it is real.
-    Divergence,
-}
-
-impl Verdict {
-    /// That of the eigenvalue with the largest Re λ. What is not a number is never stable.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use num_complex::Complex;
-    /// use pcc_evaluate::components::Verdict;
-    /// assert_eq!(Verdict::of(Complex::new(-0.1, 20.0)), Verdict::Stable);
-    /// assert_eq!(Verdict::of(Complex::new(0.1, 20.0)), Verdict::Flutter);
-    /// assert_eq!(Verdict::of(Complex::new(0.1, 0.0)), Verdict::Divergence);
-    /// ```
-    pub fn of(top: Complex<f64>) -> Self {
-        if top.re < 0.0 {
-            Self::Stable
-        } else if top.im == 0.0 {
-            Self::Divergence
-        } else {
-            Self::Flutter
-        }
-    }
-
-    /// In one word, for tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Stable => "stable",
-            Self::Flutter => "flutter",
-            Self::Divergence => "divergence",
-        }
-    }
-}
 
 /// Whether a column of results may have this name, so that an input must not.
 ///

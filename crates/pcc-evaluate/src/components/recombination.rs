@@ -1,6 +1,6 @@
 //! From components to eigenvalues: the part of the spectrum that an evaluator needs.
 
-use super::closed::{MOST_IN_CLOSED_GROUP, closed_eigenvalues};
+use super::closed::{MOST_IN_CLOSED_GROUP, closed_eigenvalues, real_roots_or_pairs};
 use super::label::Label;
 use crate::components::roots::{roots, square_root};
 use num_complex::Complex;
@@ -116,13 +116,44 @@ impl Output {
                     *coefficient = part(k);
                 }
                 let found = &mut found[..modes.min(MOST_MODES)];
-                roots(&coefficients[..found.len()], found);
+                let coefficients = &coefficients[..found.len()];
+                match on_imaginary_axis(part(0), coefficients) {
+                    Some(symmetric) => undamped_roots(&symmetric[..found.len()], found),
+                    None => roots(coefficients, found),
+                }
                 found.iter_mut().for_each(|root| *root += part(0));
                 sort_by_frequency(found);
                 eigenvalues.extend_from_slice(found);
             }
         }
     }
+}
+
+/// The elementary symmetric functions of y = z/i, if the mean and the polynomial in z with these `coefficients` are
+/// those of an undamped group: its eigenvalues lie on the imaginary axis, or symmetric to it.
+fn on_imaginary_axis(mean: Complex<f64>, coefficients: &[Complex<f64>]) -> Option<[f64; MOST_IN_CLOSED_GROUP]> {
+    if mean.re != 0.0 || coefficients.len() > MOST_IN_CLOSED_GROUP {
+        return None;
+    }
+    let mut symmetric = [0.0; MOST_IN_CLOSED_GROUP];
+    for (degree, (symmetric, c)) in (1..).zip(symmetric.iter_mut().zip(coefficients)) {
+        // c (−i)ᵐ is real, and (−1)ᵐ times the function of degree m.
+        let (own, other) = if degree % 2 == 0 { (c.re, c.im) } else { (c.im, c.re) };
+        if other != 0.0 {
+            return None;
+        }
+        *symmetric = match degree % 4 {
+            0 | 3 => own,
+            _ => -own,
+        };
+    }
+    Some(symmetric)
+}
+
+/// The roots z = iy for those functions of y.
+fn undamped_roots(symmetric: &[f64], found: &mut [Complex<f64>]) {
+    real_roots_or_pairs(symmetric, found);
+    found.iter_mut().for_each(|y| *y = Complex::new(0.0 - y.im, y.re));
 }
 
 /// Whether `first` comes after `second` in the order of modes: by frequency, equal frequencies by growth rate.

@@ -1,5 +1,6 @@
 //! What many samples of a spectrum say: stability, and per eigenvalue what engineers read.
 
+use super::verdict::{Margin, Verdict, beyond_rounding};
 use crate::probability::statistics::{Merge, Moments, Proportion};
 use num_complex::Complex;
 use serde::{Deserialize, Serialize};
@@ -14,8 +15,10 @@ pub struct EigenvalueSummary {
     pub angular_frequency: Moments,
     /// Damping ratio −Re λ/|λ|.
     pub damping_ratio: Moments,
-    /// Samples in which it is unstable, Re λ ≥ 0.
+    /// Samples in which it is unstable: its excess is positive.
     pub unstable: u64,
+    /// Samples in which its excess cannot be told from zero.
+    pub marginal: u64,
     /// Samples in which it is real.
     pub real: u64,
     /// Samples in which it is real and unstable.
@@ -33,11 +36,15 @@ pub fn damping_ratio(re: f64, im: f64) -> f64 {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Summary {
-    /// Samples with max Re λ < 0.
+    /// Stable samples: the largest excess is negative. Those that are neither stable nor unstable are marginal.
     pub stable: u64,
-    /// Unstable samples whose eigenvalue with the largest Re λ is real: they diverge, the other unstable ones flutter.
+    /// Unstable samples: the largest excess is positive.
+    pub unstable: u64,
+    /// Unstable samples whose eigenvalue with the largest excess is real: they diverge, the other unstable ones
+    /// flutter.
     pub divergent: u64,
-    /// Samples that would be stable if max Re λ were larger by the first, and by the second, of two shifts.
+    /// Samples that are not marginal and would be stable if the excess were larger by the first, and by the second, of
+    /// two shifts.
     pub stable_if_shifted: [u64; 2],
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Moments,
@@ -52,6 +59,7 @@ impl Summary {
     pub fn new(components: usize, eigenvalues: usize) -> Self {
         Self {
             stable: 0,
+            unstable: 0,
             divergent: 0,
             stable_if_shifted: [0; 2],
             max_re: Moments::default(),
@@ -77,36 +85,41 @@ impl Summary {
         Proportion { hits: self.stable, samples: self.samples() }
     }
 
-    /// Unstable samples.
-    pub fn unstable(&self) -> u64 {
-        self.samples() - self.stable
+    /// Samples that are neither stable nor unstable.
+    pub fn marginal(&self) -> u64 {
+        self.samples() - self.stable - self.unstable
     }
 
-    /// Unstable samples whose eigenvalue with the largest Re λ oscillates.
+    /// Unstable samples whose eigenvalue with the largest excess oscillates.
     pub fn fluttering(&self) -> u64 {
-        self.unstable() - self.divergent
+        self.unstable - self.divergent
     }
 
-    /// The statistics of one block of samples. `shifts`, in 1/s, are errors of max Re λ that could be.
-    pub fn of(block: &Block, shifts: [f64; 2]) -> Self {
+    /// The statistics of one block of samples. `shifts`, in 1/s, are errors of max Re λ that could be; each eigenvalue
+    /// is judged by its `margin`.
+    pub fn of(block: &Block, margin: Margin, tolerance: f64, shifts: [f64; 2]) -> Self {
         let eigenvalues = block.eigenvalues.iter().map(|lambdas| {
             let part = |part: fn(&Complex<f64>) -> f64| Moments::of(&lambdas.iter().map(part).collect::<Vec<_>>());
-            let count = |holds: fn(&&Complex<f64>) -> bool| lambdas.iter().filter(holds).count() as u64;
+            let count =
+                |holds: &dyn Fn(&Complex<f64>) -> bool| lambdas.iter().filter(|lambda| holds(lambda)).count() as u64;
+            let excess = |lambda: &Complex<f64>| beyond_rounding(margin.excess(*lambda), tolerance);
             EigenvalueSummary {
                 growth_rate: part(|lambda| lambda.re),
                 angular_frequency: part(|lambda| lambda.im),
                 damping_ratio: part(|lambda| damping_ratio(lambda.re, lambda.im)),
-                unstable: count(|lambda| lambda.re >= 0.0),
-                real: count(|lambda| lambda.im == 0.0),
-                divergent: count(|lambda| lambda.im == 0.0 && lambda.re >= 0.0),
+                unstable: count(&|lambda| excess(lambda) > 0.0),
+                marginal: count(&|lambda| excess(lambda) == 0.0),
+                real: count(&|lambda| lambda.im == 0.0),
+                divergent: count(&|lambda| lambda.im == 0.0 && excess(lambda) > 0.0),
             }
         });
-        let stable = |shift: f64| block.max_re.iter().filter(|&&max_re| max_re + shift < 0.0).count() as u64;
-        let diverges = |(max_re, frequency): &(&f64, &f64)| **max_re >= 0.0 && **frequency == 0.0;
+        let count = |holds: &dyn Fn(f64) -> bool| block.excess.iter().filter(|excess| holds(**excess)).count() as u64;
+        let diverges = |(excess, frequency): &(&f64, &f64)| Verdict::of(**excess, **frequency) == Verdict::Divergence;
         Self {
-            stable: stable(0.0),
-            divergent: block.max_re.iter().zip(&block.top_frequency).filter(diverges).count() as u64,
-            stable_if_shifted: shifts.map(stable),
+            stable: count(&|excess| excess < 0.0),
+            unstable: count(&|excess| excess > 0.0),
+            divergent: block.excess.iter().zip(&block.top_frequency).filter(diverges).count() as u64,
+            stable_if_shifted: shifts.map(|shift| count(&|excess| excess != 0.0 && excess + shift < 0.0)),
             max_re: Moments::of(&block.max_re),
             components: block.components.iter().map(|values| Moments::of(values)).collect(),
             eigenvalues: eigenvalues.collect(),
@@ -118,6 +131,7 @@ impl Merge for Summary {
     /// Adds the samples of `other`, which has as many components and eigenvalues.
     fn merge(&mut self, other: &Self) {
         self.stable += other.stable;
+        self.unstable += other.unstable;
         self.divergent += other.divergent;
         self.stable_if_shifted[0] += other.stable_if_shifted[0];
         self.stable_if_shifted[1] += other.stable_if_shifted[1];
@@ -130,9 +144,28 @@ impl Merge for Summary {
             own.angular_frequency.merge(&added.angular_frequency);
             own.damping_ratio.merge(&added.damping_ratio);
             own.unstable += added.unstable;
+            own.marginal += added.marginal;
             own.real += added.real;
             own.divergent += added.divergent;
         }
+    }
+}
+
+/// What decides on one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Top {
+    /// max Re λ, in 1/s.
+    pub max_re: f64,
+    /// The largest excess, in 1/s; 0 where it cannot be told from zero.
+    pub excess: f64,
+    /// Im λ of the eigenvalue with the largest excess, in rad/s: 0 where it is real.
+    pub frequency: f64,
+}
+
+impl Top {
+    /// What it says of stability.
+    pub fn verdict(self) -> Verdict {
+        Verdict::of(self.excess, self.frequency)
     }
 }
 
@@ -145,7 +178,9 @@ pub struct Block {
     pub eigenvalues: Vec<Vec<Complex<f64>>>,
     /// max Re λ, in 1/s.
     pub max_re: Vec<f64>,
-    /// Im λ of the eigenvalue with the largest Re λ, in rad/s: 0 where it is real.
+    /// The largest excess, in 1/s: max Re λ without a margin; 0 where it cannot be told from zero.
+    pub excess: Vec<f64>,
+    /// Im λ of the eigenvalue with the largest excess, in rad/s: 0 where it is real.
     pub top_frequency: Vec<f64>,
 }
 
@@ -156,6 +191,7 @@ impl Block {
             components: (0..components).map(|_| Vec::with_capacity(samples)).collect(),
             eigenvalues: (0..eigenvalues).map(|_| Vec::with_capacity(samples)).collect(),
             max_re: Vec::with_capacity(samples),
+            excess: Vec::with_capacity(samples),
             top_frequency: Vec::with_capacity(samples),
         }
     }
@@ -165,6 +201,7 @@ impl Block {
         self.components.iter_mut().zip(&mut other.components).for_each(|(own, added)| own.append(added));
         self.eigenvalues.iter_mut().zip(&mut other.eigenvalues).for_each(|(own, added)| own.append(added));
         self.max_re.append(&mut other.max_re);
+        self.excess.append(&mut other.excess);
         self.top_frequency.append(&mut other.top_frequency);
     }
 
@@ -175,8 +212,15 @@ impl Block {
             components: self.components.iter().map(|list| few(list)).collect(),
             eigenvalues: self.eigenvalues.iter().map(|list| list[..count.min(list.len())].to_vec()).collect(),
             max_re: few(&self.max_re),
+            excess: few(&self.excess),
             top_frequency: few(&self.top_frequency),
         }
+    }
+
+    /// What decides on a sample.
+    pub fn top(&self, sample: usize) -> Top {
+        let (max_re, excess) = (self.max_re[sample], self.excess[sample]);
+        Top { max_re, excess, frequency: self.top_frequency[sample] }
     }
 
     /// The first sample whose max Re λ is not finite, because a component overflowed.
@@ -184,16 +228,17 @@ impl Block {
         self.max_re.iter().position(|max_re| !max_re.is_finite())
     }
 
-    /// Adds one sample; `top` is its eigenvalue with the largest Re λ, which need not be among the `eigenvalues`.
+    /// Adds one sample; `top` decides on it, and need not be among the `eigenvalues`.
     #[inline]
-    pub fn push(&mut self, components: &[f64], eigenvalues: &[Complex<f64>], top: Complex<f64>) {
+    pub fn push(&mut self, components: &[f64], eigenvalues: &[Complex<f64>], top: Top) {
         for (list, &value) in self.components.iter_mut().zip(components) {
             list.push(value);
         }
         for (list, &lambda) in self.eigenvalues.iter_mut().zip(eigenvalues) {
             list.push(lambda);
         }
-        self.max_re.push(top.re);
-        self.top_frequency.push(top.im);
+        self.max_re.push(top.max_re);
+        self.excess.push(top.excess);
+        self.top_frequency.push(top.frequency);
     }
 }

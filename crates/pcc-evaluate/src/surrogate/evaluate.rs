@@ -1,7 +1,7 @@
 //! Evaluation point by point: the plain reference for the fast evaluator, and the values a self-test expects.
 
 use super::{SelfTest, Surrogate};
-use crate::components::spectral_abscissa;
+use crate::components::{Top, spectral_abscissa};
 use num_complex::Complex;
 
 /// Evaluators add the same terms in different orders; coefficients fall off, so rounding stays far below this.
@@ -48,6 +48,11 @@ impl Surrogate {
     /// max Re λ over all eigenvalues, in 1/s, from the values of all components.
     pub fn max_re(&self, components: &[f64]) -> f64 {
         spectral_abscissa(&self.eigenvalues(components))
+    }
+
+    /// What decides on stability, from the values of all components.
+    pub fn top(&self, components: &[f64]) -> Top {
+        self.verdict.top(&self.eigenvalues(components))
     }
 
     /// What an evaluator must find at these physical points.

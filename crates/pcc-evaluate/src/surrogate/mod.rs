@@ -9,8 +9,8 @@ mod sobol;
 pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
 pub use analysis::FitQuality;
 pub use records::{
-    Certificate, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
-    StopReason, Training, VerdictBasis,
+    Band, Certificate, Counts, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest, Setting,
+    SettingValue, StopReason, Training, VerdictBasis,
 };
 pub use sobol::SobolIndices;
 
@@ -78,6 +78,26 @@ impl Surrogate {
     /// The names of all eigenvalues it yields, in the order in which recombination yields them.
     pub fn labels(&self) -> Vec<Label> {
         self.outputs.iter().flat_map(Output::labels).collect()
+    }
+
+    /// Whether its eigenvalues lie on the imaginary axis or symmetric to it at every point: nothing decays but what
+    /// grows elsewhere.
+    pub fn is_undamped(&self) -> bool {
+        let vanishes = |component: &Component| {
+            let is_zero = |expansion: &Expansion| expansion.coefficients.iter().all(|&coefficient| coefficient == 0.0);
+            component.center == 0.0 && self.expansions_of(component.id).all(is_zero)
+        };
+        let is_undamped = |output: &Output| match output.kind {
+            // Odd functions of λ.
+            OutputKind::Closed => output.components.iter().step_by(2).all(vanishes),
+            // Re s, then Im c_{k−2}, Re c_{k−3}, and so on.
+            OutputKind::Eigenvalue | OutputKind::Cluster => {
+                vanishes(&output.components[0])
+                    && (2..output.components.len() / 2 + 1)
+                        .all(|degree| vanishes(&output.components[2 * (degree - 1) + usize::from(degree % 2 == 0)]))
+            }
+        };
+        self.outputs.iter().all(is_undamped)
     }
 
     /// Whether some of its eigenvalues can be real.

@@ -1,6 +1,8 @@
 //! What a surrogate records beside its coefficients.
 
+use crate::components::{Margin, Top, beyond_rounding, spectral_abscissa};
 use crate::polynomials::IndexSet;
+use num_complex::Complex;
 use serde::Serialize;
 
 /// Where a surrogate comes from.
@@ -136,10 +138,55 @@ pub struct Counts {
 }
 
 /// What the verdict on stability rests on beside the sign of Re λ. By default nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VerdictBasis {
     /// Number of eigenvalues of the model that are rigid-body motion: zero at every point, and left out of the verdict.
     pub rigid_body_modes: usize,
+    /// How far eigenvalues must stay from instability.
+    pub margin: Margin,
+    /// Growth rates up to this, in 1/s, could not be told from zero by the model's eigenvalue solver.
+    pub tolerance: f64,
+    /// The band of frequencies that was asked for, if it was one.
+    pub band: Option<Band>,
+}
+
+/// The modes of a surrogate were chosen by their frequencies in the middle of the inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Lower end, in Hz.
+    pub lower: f64,
+    /// Upper end, in Hz.
+    pub upper: f64,
+    /// Number of modes of the model, inside and outside.
+    pub modes: usize,
+    /// Number of its real eigenvalues that belong to no mode.
+    pub reals: usize,
+}
+
+impl VerdictBasis {
+    /// What decides: the largest excess, of eigenvalues none of which is NaN.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use num_complex::Complex;
+    /// use pcc_evaluate::components::Verdict;
+    /// use pcc_evaluate::surrogate::VerdictBasis;
+    /// let lambdas = [Complex::new(-2.0, 5.0), Complex::new(1e-14, 9.0)];
+    /// let found = VerdictBasis { tolerance: 1e-12, ..VerdictBasis::default() }.top(&lambdas);
+    /// assert_eq!((found.excess, found.frequency, found.verdict()), (0.0, 9.0, Verdict::Marginal));
+    /// ```
+    pub fn top(&self, eigenvalues: &[Complex<f64>]) -> Top {
+        let larger = |a: Complex<f64>, b: Complex<f64>| {
+            if self.margin.excess(b) > self.margin.excess(a) { b } else { a }
+        };
+        let decides = eigenvalues.iter().copied().reduce(larger).unwrap_or(Complex::new(f64::NEG_INFINITY, 0.0));
+        Top {
+            max_re: spectral_abscissa(eigenvalues),
+            excess: beyond_rounding(self.margin.excess(decides), self.tolerance),
+            frequency: decides.im,
+        }
+    }
 }
 
 /// What is known of the error where stability is decided.
@@ -189,6 +236,17 @@ pub struct SelfTest {
     pub tolerance: f64,
 }
 
+/// Verified bounds of the marginal and of the unstable share, each at the level of the certificate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MarginalBounds {
+    /// Points that the surrogate calls marginal and the model does not.
+    pub falsely_marginal: u64,
+    /// Lower and upper end of the bound on the marginal share.
+    pub marginal: [f64; 2],
+    /// Of the bound on the unstable share.
+    pub unstable: [f64; 2],
+}
+
 /// A verified bound on the stability proportion. Reports serialise it; surrogate files have a type of their own.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
@@ -198,9 +256,9 @@ pub struct Certificate {
     pub samples: u64,
     /// How the points were drawn.
     pub scheme: String,
-    /// Points that the surrogate calls stable and the model unstable.
+    /// Points that the surrogate calls stable and the model does not.
     pub falsely_stable: u64,
-    /// Points that the surrogate calls unstable and the model stable.
+    /// Points that the model calls stable and the surrogate does not.
     pub falsely_unstable: u64,
     /// Confidence level.
     pub level: f64,
@@ -208,6 +266,9 @@ pub struct Certificate {
     pub lower: f64,
     /// Upper end.
     pub upper: f64,
+    /// Bounds of the other shares, where some points are neither stable nor unstable.
+    #[serde(flatten)]
+    pub marginal: Option<MarginalBounds>,
     /// `pcc_compile::study::Study::problem_hash` of the model that was run.
     #[serde(skip_serializing)]
     pub problem_hash: String,

@@ -9,7 +9,8 @@
 //! | 8 | seconds that the run took |
 //! | 4, 8 r | number r of inputs, their values x in physical units |
 //! | 1 | status: 0 answered, 1 failed, 2 failed by circumstances |
-//! | … | answered: number of eigenvalues (u32), Re λ and Im λ of each, then the derivatives: 0 none, 3 reduced; in version 1 also 1 and 2 |
+//! | … | answered: number of eigenvalues (u32), Re λ and Im λ of each, then what else is known, by kind: 0 nothing, 3 reduced systems; in version 1 also 1 and 2 |
+//! | … | before these there can be a 4: errors of Re λ and of λ for each eigenvalue |
 //! | … | with 3: number of modes of interest (u32), their ranks (u32 each), number of reduced systems (u32) |
 //! | … | each system: numbers m of its eigenvalues and n of states (u32 each), the eigenvalues, T and D_1 … D_r, m × m complex numbers each, right eigenvectors, n × m, left eigenvectors, m × n, all by columns |
 //! | … | with 1, modes could not be separated, and 2, reduced: number m of modes (u32), their ranks (u32 each) |
@@ -17,6 +18,7 @@
 //! | … | failed: number of attempts (u32), length (u32) and UTF-8 text of the cause |
 
 use crate::mechanics::spectrum::{Computation, ReducedSystem, Reductions};
+use crate::numerics::accuracy::Accuracy;
 use nalgebra::{Complex, DMatrix};
 
 /// Bytes of the hash that names a model.
@@ -30,6 +32,7 @@ const NO_DERIVATIVES: u8 = 0;
 const INSEPARABLE_V1: u8 = 1;
 const REDUCED_V1: u8 = 2;
 const REDUCED: u8 = 3;
+const ACCURACIES: u8 = 4;
 
 /// A body of more bytes is no record: 1000 modes with 50 derivatives fit.
 pub(super) const LARGEST_BODY: usize = 1 << 30;
@@ -141,6 +144,13 @@ fn put_complex(bytes: &mut Vec<u8>, value: Complex<f64>) {
 fn put_computation(bytes: &mut Vec<u8>, computation: &Computation) {
     put_count(bytes, computation.eigenvalues.len());
     computation.eigenvalues.iter().for_each(|&lambda| put_complex(bytes, lambda));
+    if !computation.accuracies.is_empty() {
+        bytes.push(ACCURACIES);
+        for accuracy in &computation.accuracies {
+            put_number(bytes, accuracy.re);
+            put_number(bytes, accuracy.whole);
+        }
+    }
     let Some(Reductions { modes, systems }) = &computation.reductions else {
         bytes.push(NO_DERIVATIVES);
         return;
@@ -218,7 +228,15 @@ impl<'a> Reader<'a> {
     fn computation(&mut self, inputs: usize) -> Option<Computation> {
         let count = self.count()?;
         let eigenvalues = self.complex(count)?;
-        let reductions = match self.byte()? {
+        let (mut kind, mut accuracies) = (self.byte()?, Vec::new());
+        if kind == ACCURACIES {
+            let numbers = self.numbers(count.checked_mul(2)?)?;
+            let is_error = |error: &f64| *error >= 0.0;
+            numbers.iter().all(is_error).then_some(())?;
+            accuracies = numbers.chunks_exact(2).map(|pair| Accuracy { re: pair[0], whole: pair[1] }).collect();
+            kind = self.byte()?;
+        }
+        let reductions = match kind {
             NO_DERIVATIVES => None,
             REDUCED => Some(self.reductions(inputs)?),
             kind @ (INSEPARABLE_V1 | REDUCED_V1) => {
@@ -227,7 +245,7 @@ impl<'a> Reader<'a> {
             }
             _ => return None,
         };
-        Some(Computation { eigenvalues, reductions })
+        Some(Computation { eigenvalues, accuracies, reductions })
     }
 
     fn counts(&mut self) -> Option<Vec<usize>> {
@@ -279,14 +297,19 @@ mod tests {
         let system =
             ReducedSystem::from_parts(eigenvalues.clone(), matrix(0.1), derivatives, vectors(3, 2), vectors(2, 3));
         let reductions = Some(Reductions { modes: vec![1], systems: vec![system.unwrap()] });
-        let outcome = RunOutcome::Answered(Computation { eigenvalues, reductions });
+        let accuracies = vec![Accuracy { re: 1e-12, whole: 1e-9 }; 2];
+        let outcome = RunOutcome::Answered(Computation { eigenvalues, accuracies, reductions });
         Record { model: [7; HASH_BYTES], point: point.to_vec(), outcome, seconds: 0.25 }
     }
 
     fn kinds() -> Vec<Record> {
         let full = record(&[0.1, -2e300]);
         let with = |reductions| Record {
-            outcome: RunOutcome::Answered(Computation { eigenvalues: vec![Complex::new(1.0, 2.0)], reductions }),
+            outcome: RunOutcome::Answered(Computation {
+                eigenvalues: vec![Complex::new(1.0, 2.0)],
+                accuracies: Vec::new(),
+                reductions,
+            }),
             ..full.clone()
         };
         let failed = |by_circumstances| {
@@ -309,7 +332,8 @@ mod tests {
         let full = record(&[0.1, -2e300]);
         let RunOutcome::Answered(computation) = full.outcome.clone() else { panic!() };
         for (kind, rest) in [(INSEPARABLE_V1, 0), (REDUCED_V1, 3 * 4 * 16)] {
-            let plain = RunOutcome::Answered(Computation { reductions: None, ..computation.clone() });
+            let plain =
+                RunOutcome::Answered(Computation { accuracies: Vec::new(), reductions: None, ..computation.clone() });
             let record = Record { outcome: plain, ..full.clone() };
             let mut body = record.frame().unwrap()[FRAME_HEAD..].to_vec();
             body.pop();

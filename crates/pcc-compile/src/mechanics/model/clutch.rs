@@ -110,11 +110,16 @@ impl Model for Clutch {
         true
     }
 
+    fn system(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
+        self.check(point)?;
+        self.matrices(point).linearization(Vec::new()).map(Some)
+    }
+
     fn linearization(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
         self.check(point)?;
         let values = self.values(point);
         let derivatives: Vec<SecondOrder> = self.uncertain.iter().map(|&by| derivative(&values, by)).collect();
-        matrices(&values).linearization(&derivatives).map(Some)
+        matrices(&values).linearization(derivatives).map(Some)
     }
 }
 

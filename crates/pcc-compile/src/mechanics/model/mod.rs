@@ -139,6 +139,15 @@ pub trait Model: Sync {
         Ok(None)
     }
 
+    /// The same without derivatives: what eigenvalues alone are computed of.
+    ///
+    /// # Errors
+    ///
+    /// As [`Model::eigenvalues`].
+    fn system(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
+        self.linearization(point)
+    }
+
     /// How many runs may go on at once.
     fn concurrency(&self) -> Concurrency {
         Concurrency::Threads

@@ -15,13 +15,24 @@ pub struct SecondOrder {
     pub stiffness: DMatrix<f64>,
 }
 
-/// The state matrix A of ẋ = A x and its derivatives.
+/// The state matrix A of ẋ = A x, its derivatives, and what they were made of.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearization {
     /// A.
     pub state_matrix: DMatrix<f64>,
     /// ∂A/∂x_j, one per uncertain input x_j in physical units, in the order of the inputs.
     pub derivatives: Vec<DMatrix<f64>>,
+    /// M, C and K of a second-order system, on which eigenvalues can be refined.
+    pub second_order: Option<SecondOrder>,
+    /// Their derivatives by each input, as many as those of A.
+    pub second_order_derivatives: Vec<SecondOrder>,
+}
+
+impl Linearization {
+    /// A system that is of first order by itself, with the derivatives of its state matrix by each input.
+    pub fn first_order(state_matrix: DMatrix<f64>, derivatives: Vec<DMatrix<f64>>) -> Self {
+        Self { state_matrix, derivatives, second_order: None, second_order_derivatives: Vec::new() }
+    }
 }
 
 impl SecondOrder {
@@ -46,7 +57,7 @@ impl SecondOrder {
         self.divided_by(&self.factored()?).map(|(stiffness, damping)| assemble(&stiffness, &damping, 1.0))
     }
 
-    /// A with its derivatives, given those of M, C and K by each uncertain input:
+    /// A with its derivatives, given those of M, C and K by each uncertain input, or by none of them:
     ///
     /// dA = \[0, 0; −M⁻¹(dK − dM M⁻¹K), −M⁻¹(dC − dM M⁻¹C)\].
     ///
@@ -57,7 +68,7 @@ impl SecondOrder {
     /// # Panics
     ///
     /// If matrices differ in size.
-    pub fn linearization(&self, derivatives: &[Self]) -> Result<Linearization, ModelError> {
+    pub fn linearization(self, derivatives: Vec<Self>) -> Result<Linearization, ModelError> {
         let mass = self.factored()?;
         let (stiffness, damping) = self.divided_by(&mass)?;
         let derivative = |by: &Self| {
@@ -74,6 +85,8 @@ impl SecondOrder {
         Ok(Linearization {
             state_matrix: assemble(&stiffness, &damping, 1.0),
             derivatives: derivatives.iter().map(derivative).collect::<Result<_, _>>()?,
+            second_order: Some(self),
+            second_order_derivatives: derivatives,
         })
     }
 
@@ -127,7 +140,7 @@ mod tests {
             damping: dmatrix![0.1, 0.0; 0.0, 0.0],
             stiffness: dmatrix![0.0, -3.0; 5.0, 1.0],
         };
-        let found = system(x).linearization(&[by_x]).unwrap();
+        let found = system(x).linearization(vec![by_x]).unwrap();
         let at = |x| system(x).state_matrix().unwrap();
         assert_eq!(found.state_matrix, at(x));
         let step = 1e-5;

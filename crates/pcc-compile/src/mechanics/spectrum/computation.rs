@@ -2,8 +2,10 @@
 
 use super::derivatives::ReducedSystem;
 use super::labels::Vectors;
-use super::modes::{Spectrum, without_smallest};
-use crate::numerics::eigenvalues::SchurForm;
+use super::modes::Spectrum;
+use super::solution::{Solution, positions_without_smallest};
+use crate::mechanics::model::SecondOrder;
+use crate::numerics::accuracy::Accuracy;
 use nalgebra::{Complex, DMatrix};
 use pcc_evaluate::components::OutputKind;
 
@@ -15,8 +17,26 @@ const MOST_FOLLOWED: usize = 100;
 pub struct Computation {
     /// Eigenvalues λ, in 1/s, as the model gave them: all of them, or those it was asked for.
     pub eigenvalues: Vec<Complex<f64>>,
+    /// The accuracy of each; empty if the model knows nothing of it.
+    pub accuracies: Vec<Accuracy>,
     /// The system with its derivatives, if they were asked for.
     pub reductions: Option<Reductions>,
+}
+
+impl Computation {
+    /// The answer of a model that knows nothing but its eigenvalues.
+    pub fn of_eigenvalues(eigenvalues: Vec<Complex<f64>>) -> Self {
+        Self { eigenvalues, accuracies: Vec::new(), reductions: None }
+    }
+}
+
+/// The derivatives of a system by each input, in physical units.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Slopes<'d> {
+    /// Of the state matrix.
+    pub state_matrix: &'d [DMatrix<f64>],
+    /// Of the matrices of a second-order system; none of another.
+    pub second_order: &'d [SecondOrder],
 }
 
 /// The state matrix and its derivatives on invariant subspaces: of the modes of interest, and of all eigenvalues where
@@ -30,21 +50,21 @@ pub struct Reductions {
 }
 
 impl Reductions {
-    /// Reduces the system of a Schur form with this spectrum, with the derivatives of the state matrix by each input in
-    /// physical units. The modes of interest have the frequency ranks `modes`.
-    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], spectrum: &Spectrum, modes: Vec<usize>) -> Self {
-        let found = schur.eigenvalues();
+    /// Reduces a system that was solved and has this spectrum. The modes of interest have the frequency ranks `modes`.
+    pub fn new(solution: &Solution, slopes: Slopes<'_>, spectrum: &Spectrum, modes: Vec<usize>) -> Self {
+        let found = solution.eigenvalues();
         let of_interest: Vec<Complex<f64>> = modes.iter().filter_map(|&mode| spectrum.mode(mode).ok()).collect();
         let reduce = |lambdas: &[Complex<f64>]| match lambdas.is_empty() {
             true => None,
-            false => ReducedSystem::new(schur, derivatives, lambdas),
+            false => ReducedSystem::new(solution, slopes, lambdas),
         };
         let mut systems: Vec<ReducedSystem> = reduce(&of_interest).into_iter().collect();
         let is_all = 2 * of_interest.len() == spectrum.eigenvalues().len();
         if systems.is_empty() || (!is_all && spectrum.eigenvalues().len() <= MOST_FOLLOWED) {
             // The numbers of the solver, where the spectrum has made real what is nearly so; in the order of the Schur
             // form, so that little of it has to change places.
-            systems.extend(reduce(&without_smallest(&found, spectrum.rigid_body_modes())));
+            let kept = positions_without_smallest(found, spectrum.rigid_body_modes());
+            systems.extend(reduce(&kept.into_iter().map(|at| found[at]).collect::<Vec<_>>()));
         }
         Self { modes, systems }
     }

@@ -17,7 +17,10 @@
 //! eigenvalues are followed from run to run.
 
 use super::closed_slopes::closed_slopes;
-use crate::numerics::eigenvalues::SchurForm;
+use super::computation::Slopes;
+use super::modes::is_nearly_real;
+use super::refinement::Refined;
+use super::solution::Solution;
 use crate::numerics::invariant_subspace::Subspace;
 use nalgebra::{Complex, DMatrix};
 use pcc_evaluate::components::OutputKind;
@@ -78,24 +81,78 @@ impl ReducedSystem {
         &self.left
     }
 
-    /// Reduces a system to some of its eigenvalues, which are numbers of the Schur form itself. `derivatives` are those
-    /// of the state matrix by each input, in physical units.
+    /// Reduces a system to some of its eigenvalues, which are numbers of the solution.
     ///
-    /// `None` if the eigenvalues cannot be separated from the rest of the spectrum ([`Subspace::is_separated`]), or one
-    /// of them does not exist.
-    pub fn new(schur: &SchurForm, derivatives: &[DMatrix<f64>], eigenvalues: &[Complex<f64>]) -> Option<Self> {
-        let subspace = schur.subspace(&positions(&schur.eigenvalues(), eigenvalues)?);
-        if !subspace.is_separated() {
-            return None;
+    /// Those that were refined have vectors of their own, the others share an invariant subspace. If that cannot be
+    /// separated from the rest of the spectrum ([`Subspace::is_separated`]), as where that is wide, all are refined.
+    /// `None` if that fails, too, or one of them does not exist.
+    pub fn new(solution: &Solution, slopes: Slopes<'_>, eigenvalues: &[Complex<f64>]) -> Option<Self> {
+        let positions = positions(solution.eigenvalues(), eigenvalues)?;
+        let together: Vec<usize> = positions.iter().copied().filter(|&at| solution.refined(at).is_none()).collect();
+        let subspace = Some(&together).filter(|together| !together.is_empty()).map(|at| solution.schur().subspace(at));
+        let (subspace, single): (Option<Subspace>, Vec<&Refined>) = match subspace {
+            Some(subspace) if !subspace.is_separated() => {
+                let refined = solution.all_refined();
+                (None, positions.iter().map(|&at| refined[at].as_ref()).collect::<Option<_>>()?)
+            }
+            subspace => (subspace, positions.iter().filter_map(|&at| solution.refined(at)).collect()),
+        };
+        if single.is_empty() {
+            return subspace.map(|subspace| Self::of_subspace(subspace, slopes, eigenvalues.to_vec()));
         }
+        let together = together.iter().filter(|_| subspace.is_some()).map(|&at| solution.eigenvalues()[at]).collect();
+        Self::of_vectors(solution, (subspace, together), &single, slopes)
+    }
+
+    fn of_subspace(subspace: Subspace, slopes: Slopes<'_>, eigenvalues: Vec<Complex<f64>>) -> Self {
         let (vectors, inverse) = eigenvectors(&subspace.restricted);
-        Some(Self {
-            eigenvalues: eigenvalues.to_vec(),
-            derivatives: reduced_derivatives(&subspace, derivatives),
+        Self {
+            eigenvalues,
+            derivatives: reduced_derivatives(&subspace.left, &subspace.right, slopes.state_matrix),
             right: &subspace.right * vectors,
             left: inverse * &subspace.left,
             state_matrix: subspace.restricted,
-        })
+        }
+    }
+
+    /// The system of a subspace with its eigenvalues, if there is one, and of those that have vectors of their own.
+    fn of_vectors(
+        solution: &Solution,
+        (subspace, mut eigenvalues): (Option<Subspace>, Vec<Complex<f64>>),
+        single: &[&Refined],
+        slopes: Slopes<'_>,
+    ) -> Option<Self> {
+        let (second_order, states) = (solution.second_order()?, solution.eigenvalues().len());
+        let first = subspace.as_ref().map_or(0, |subspace| subspace.right.ncols());
+        let count = first + single.len();
+        let (mut right, mut left) = (DMatrix::zeros(states, count), DMatrix::zeros(count, states));
+        let mut state_matrix = DMatrix::zeros(count, count);
+        let mut own = DMatrix::identity(count, count);
+        let mut own_inverse = DMatrix::identity(count, count);
+        if let Some(subspace) = &subspace {
+            right.columns_mut(0, first).copy_from(&subspace.right);
+            left.rows_mut(0, first).copy_from(&subspace.left);
+            state_matrix.view_mut((0, 0), (first, first)).copy_from(&subspace.restricted);
+            let (vectors, inverse) = eigenvectors(&subspace.restricted);
+            own.view_mut((0, 0), (first, first)).copy_from(&vectors);
+            own_inverse.view_mut((0, 0), (first, first)).copy_from(&inverse);
+        }
+        for (k, refined) in (first..).zip(single) {
+            right.set_column(k, &refined.right_state());
+            left.set_row(k, &refined.left_state(second_order).transpose());
+            state_matrix[(k, k)] = refined.eigenvalue;
+        }
+        let mut derivatives = reduced_derivatives(&left, &right, slopes.state_matrix);
+        // Products with the state matrix lose the digits of slow modes; those with the matrices it is made of do not.
+        for (reduced, by_input) in derivatives.iter_mut().zip(slopes.second_order) {
+            for (i, one) in (first..).zip(single) {
+                for (k, other) in (first..).zip(single) {
+                    reduced[(i, k)] = one.moved_by(other, by_input);
+                }
+            }
+        }
+        eigenvalues.extend(single.iter().map(|refined| refined.eigenvalue));
+        Some(Self { eigenvalues, state_matrix, derivatives, right: right * own, left: own_inverse * left })
     }
 
     /// The derivatives of the components of a group of this kind, in their order, by each input in physical units: one
@@ -131,10 +188,27 @@ impl ReducedSystem {
 fn positions(all: &[Complex<f64>], wanted: &[Complex<f64>]) -> Option<Vec<usize>> {
     let mut positions: Vec<usize> = Vec::with_capacity(wanted.len());
     for lambda in wanted {
-        let position = (0..all.len()).find(|at| all[*at] == *lambda && !positions.contains(at))?;
+        let candidates = (0..all.len()).filter(|at| is_seen_as(all[*at], *lambda) && !positions.contains(at));
+        let position = nearest(candidates, all, *lambda)?;
         positions.push(position);
     }
     Some(positions)
+}
+
+/// Whether a spectrum can have made this `seen` of the solver's number: real what is nearly so, imaginary what cannot
+/// be told from it.
+pub(super) fn is_seen_as(solved: Complex<f64>, seen: Complex<f64>) -> bool {
+    (solved.re == seen.re || seen.re == 0.0) && (solved.im == seen.im || (seen.im == 0.0 && is_nearly_real(solved)))
+}
+
+/// The first of these positions whose eigenvalue is nearest to `lambda`.
+pub(super) fn nearest(
+    positions: impl Iterator<Item = usize>,
+    all: &[Complex<f64>],
+    lambda: Complex<f64>,
+) -> Option<usize> {
+    let distance = |at: usize| (all[at] - lambda).norm();
+    positions.reduce(|a, b| if distance(b) < distance(a) { b } else { a })
 }
 
 /// The eigenvectors of an upper triangular matrix, one per column, and their inverse. Of eigenvalues that coalesce they
@@ -163,17 +237,21 @@ fn eigenvectors(triangular: &DMatrix<Complex<f64>>) -> (DMatrix<Complex<f64>>, D
 }
 
 /// W D_j V for real D_j.
-fn reduced_derivatives(subspace: &Subspace, derivatives: &[DMatrix<f64>]) -> Vec<DMatrix<Complex<f64>>> {
-    let (size, modes) = subspace.right.shape();
+fn reduced_derivatives(
+    left: &DMatrix<Complex<f64>>,
+    right: &DMatrix<Complex<f64>>,
+    derivatives: &[DMatrix<f64>],
+) -> Vec<DMatrix<Complex<f64>>> {
+    let (size, modes) = right.shape();
     // Real and imaginary parts side by side: real products are cheaper.
     let right = DMatrix::from_fn(size, 2 * modes, |i, k| {
-        let entry = subspace.right[(i, k % modes)];
+        let entry = right[(i, k % modes)];
         if k < modes { entry.re } else { entry.im }
     });
     let reduced = |derivative: &DMatrix<f64>| {
         let product = derivative * &right;
         let parts = (product.columns(0, modes), product.columns(modes, modes));
-        &subspace.left * parts.0.zip_map(&parts.1, Complex::new)
+        left * parts.0.zip_map(&parts.1, Complex::new)
     };
     derivatives.iter().map(reduced).collect()
 }
@@ -240,16 +318,21 @@ mod tests {
         state
     }
 
+    fn solution(x: f64) -> Solution {
+        Solution::new(state_matrix(x), None).unwrap()
+    }
+
     fn spectrum(x: f64) -> Spectrum {
-        Spectrum::new(&SchurForm::new(state_matrix(x)).unwrap().eigenvalues()).unwrap()
+        Spectrum::new(solution(x).eigenvalues()).unwrap()
     }
 
     #[test]
     fn slopes_are_those_of_differences_for_every_grouping() {
         let x = 0.7;
-        let schur = SchurForm::new(state_matrix(x)).unwrap();
-        let half = ReducedSystem::new(&schur, &[derivative(x)], spectrum(x).oscillating()).unwrap();
-        let full = ReducedSystem::new(&schur, &[derivative(x)], spectrum(x).eigenvalues()).unwrap();
+        let by_x = [derivative(x)];
+        let slopes = Slopes { state_matrix: &by_x, second_order: &[] };
+        let half = ReducedSystem::new(&solution(x), slopes, spectrum(x).oscillating()).unwrap();
+        let full = ReducedSystem::new(&solution(x), slopes, spectrum(x).eigenvalues()).unwrap();
         // By the distances between modes each grouping is what invariants of these lists would be.
         for group in [vec![0], vec![1], vec![2], vec![0, 1], vec![1, 2], vec![0, 1, 2]] {
             for kind in [OutputKind::Eigenvalue, OutputKind::Cluster, OutputKind::Closed] {
@@ -284,8 +367,7 @@ mod tests {
 
     #[test]
     fn eigenvectors_are_biorthonormal_and_those_of_the_matrix() {
-        let schur = SchurForm::new(state_matrix(0.3)).unwrap();
-        let system = ReducedSystem::new(&schur, &[], spectrum(0.3).eigenvalues()).unwrap();
+        let system = ReducedSystem::new(&solution(0.3), Slopes::default(), spectrum(0.3).eigenvalues()).unwrap();
         let matrix = state_matrix(0.3).map(|entry| Complex::new(entry, 0.0));
         let product = system.left() * system.right();
         assert!((product - DMatrix::identity(6, 6)).norm() < 1e-11);
@@ -301,11 +383,12 @@ mod tests {
         let mut state = DMatrix::zeros(4, 4);
         state.view_mut((0, 2), (2, 2)).fill_with_identity();
         state.view_mut((2, 0), (2, 2)).copy_from(&dmatrix![-100.0, 1.0; 0.0, -100.0]);
-        let schur = SchurForm::new(state.clone()).unwrap();
-        let spectrum = Spectrum::new(&schur.eigenvalues()).unwrap();
-        let modes = spectrum.oscillating();
-        assert_eq!(ReducedSystem::new(&schur, std::slice::from_ref(&state), &modes[..1]), None);
-        let both = ReducedSystem::new(&schur, &[state], modes).unwrap();
+        let solution = Solution::new(state.clone(), None).unwrap();
+        let spectrum = Spectrum::new(solution.eigenvalues()).unwrap();
+        let (modes, by_x) = (spectrum.oscillating(), [state]);
+        let slopes = Slopes { state_matrix: &by_x, second_order: &[] };
+        assert_eq!(ReducedSystem::new(&solution, slopes, &modes[..1]), None);
+        let both = ReducedSystem::new(&solution, slopes, modes).unwrap();
         assert_eq!(both.differentiate(OutputKind::Eigenvalue, &modes[..1]), None);
         assert!(both.differentiate(OutputKind::Cluster, modes).is_some());
         let unknown = [modes[0], Complex::new(1.0, 2.0)];

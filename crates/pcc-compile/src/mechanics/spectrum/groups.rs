@@ -7,6 +7,7 @@
 
 use super::labels::Labels;
 use super::modes::Spectrum;
+use crate::numerics::accuracy::Accuracy;
 use nalgebra::Complex;
 use pcc_evaluate::components::{MOST_IN_CLOSED_GROUP, MOST_MODES, OutputKind};
 
@@ -160,19 +161,23 @@ impl Groups {
     /// The eigenvalues of a group at a run, in the order in which components are made of them: those of complex groups
     /// by frequency, those of closed ones by |λ|.
     pub fn eigenvalues(&self, group: &Group, labels: &Labels, run: usize, spectrum: &Spectrum) -> Vec<Complex<f64>> {
-        let mut positions: Vec<usize> = group.labels.iter().map(|&label| labels.position(run, label)).collect();
-        positions.sort_unstable();
-        let lambdas = positions.iter().map(|&position| spectrum.eigenvalues()[position]);
-        match group.is_closed {
-            true => lambdas.collect(),
-            false => {
-                let rank = |lambda: &Complex<f64>| spectrum.oscillating().iter().position(|other| other == lambda);
-                let mut ranked: Vec<_> = lambdas.map(|lambda| (rank(&lambda), lambda)).collect();
-                ranked.sort_by_key(|(rank, _)| *rank);
-                ranked.into_iter().map(|(_, lambda)| lambda).collect()
-            }
-        }
+        positions(group, labels, run, spectrum).into_iter().map(|position| spectrum.eigenvalues()[position]).collect()
     }
+
+    /// The accuracy of each of these.
+    pub fn accuracies(&self, group: &Group, labels: &Labels, run: usize, spectrum: &Spectrum) -> Vec<Accuracy> {
+        positions(group, labels, run, spectrum).into_iter().map(|position| spectrum.accuracies()[position]).collect()
+    }
+}
+
+fn positions(group: &Group, labels: &Labels, run: usize, spectrum: &Spectrum) -> Vec<usize> {
+    let mut positions: Vec<usize> = group.labels.iter().map(|&label| labels.position(run, label)).collect();
+    positions.sort_unstable();
+    if !group.is_closed {
+        let lambda = |position: usize| spectrum.eigenvalues()[position];
+        positions.sort_by_key(|&position| spectrum.oscillating().iter().position(|other| *other == lambda(position)));
+    }
+    positions
 }
 
 /// Sets that can be joined: the smallest member stands for all.

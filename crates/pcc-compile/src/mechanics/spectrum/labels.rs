@@ -8,7 +8,7 @@
 //!
 //! Without vectors labels are ranks by |λ|, conjugates side by side: valid as far as the groups made of them are.
 
-use super::derivatives::ReducedSystem;
+use super::derivatives::{ReducedSystem, is_seen_as, nearest};
 use super::modes::Spectrum;
 use crate::numerics::assignment::assignment;
 use nalgebra::{Complex, DMatrix};
@@ -31,9 +31,7 @@ impl Vectors {
         let (own, states) = (system.eigenvalues(), system.right().nrows());
         let mut used = vec![false; own.len()];
         let mut take = |lambda: Complex<f64>| {
-            // What is nearly real is real in the spectrum.
-            let is_same = |at: usize| own[at] == lambda || (lambda.im == 0.0 && own[at].re == lambda.re);
-            let at = (0..own.len()).find(|&at| is_same(at) && !used[at])?;
+            let at = nearest((0..own.len()).filter(|&at| is_seen_as(own[at], lambda) && !used[at]), own, lambda)?;
             used[at] = true;
             Some(at)
         };
@@ -43,7 +41,7 @@ impl Vectors {
             let (at, is_conjugate) = match take(lambda) {
                 Some(at) => (at, false),
                 // The half of a pair that is not there has the conjugate vectors of the other.
-                None if lambda.im < 0.0 => (own.iter().position(|other| *other == lambda.conj())?, true),
+                None if lambda.im < 0.0 => (own.iter().position(|other| is_seen_as(*other, lambda.conj()))?, true),
                 None => return None,
             };
             let of = |entry: Complex<f64>| if is_conjugate { entry.conj() } else { entry };
@@ -205,8 +203,7 @@ fn note_swaps(swaps: &mut DMatrix<f64>, overlaps: &DMatrix<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::spectrum::Reductions;
-    use crate::numerics::eigenvalues::SchurForm;
+    use crate::mechanics::spectrum::{Reductions, Slopes, Solution};
     use nalgebra::dmatrix;
 
     /// Two oscillators of frequencies 10 + x and 10 − x, nearly uncoupled: they cross at x = 0.
@@ -216,9 +213,9 @@ mod tests {
         state.view_mut((0, 2), (2, 2)).fill_with_identity();
         state.view_mut((2, 0), (2, 2)).copy_from(&-stiffness);
         state.view_mut((2, 2), (2, 2)).copy_from(&dmatrix![-0.1, 0.0; 0.0, -0.3]);
-        let schur = SchurForm::new(state).unwrap();
-        let spectrum = Spectrum::new(&schur.eigenvalues()).unwrap();
-        let vectors = Reductions::new(&schur, &[], &spectrum, vec![1, 2]).vectors(&spectrum).unwrap();
+        let solution = Solution::new(state, None).unwrap();
+        let spectrum = Spectrum::new(solution.eigenvalues()).unwrap();
+        let vectors = Reductions::new(&solution, Slopes::default(), &spectrum, vec![1, 2]).vectors(&spectrum).unwrap();
         (spectrum, vectors)
     }
 

@@ -1,11 +1,18 @@
 //! From eigenvalues to numbered modes.
 
+use super::solution::positions_without_smallest;
+use crate::numerics::accuracy::Accuracy;
 use nalgebra::Complex;
+use pcc_evaluate::components::{Margin, Top, beyond_rounding};
 use thiserror::Error;
 
 /// Eigenvalues with |λ| at most this share of max |λ| are rigid-body motion. Fourfold zero eigenvalues come out of the
 /// solver at about 1e-8 max |λ|.
 const RIGID: f64 = 1e-6;
+
+/// Eigenvalues that a study calls zero may be up to this share of the next: matrices with few digits leave them some
+/// stiffness.
+const CLEARLY_SMALLER: f64 = 1e-2;
 
 /// Imaginary parts at most this share of |λ| are rounding: the eigenvalue is real.
 const REAL: f64 = 1e-9;
@@ -20,6 +27,17 @@ pub enum SpectrumError {
     /// Every eigenvalue is zero: there is nothing that could be unstable.
     #[error("all eigenvalues are zero: the system has only rigid-body motion")]
     OnlyRigid,
+    /// The study says how much is rigid-body motion, and the spectrum says otherwise.
+    #[error(
+        "rigid_body_modes = {stated}, but {found}; {stated} eigenvalues are to be zero and no more: correct the number, or \
+         leave it out, so that it is found by structure"
+    )]
+    RigidBodyModes {
+        /// Number in the study.
+        stated: usize,
+        /// What was found.
+        found: String,
+    },
     /// A mode was asked for that does not exist.
     #[error("mode {mode} was asked for, but only {count} modes oscillate; modes are numbered by frequency from 1")]
     NoSuchMode {
@@ -46,24 +64,47 @@ pub enum SpectrumError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     all: Vec<Complex<f64>>,
+    /// Of all of them.
+    all_accuracies: Vec<Accuracy>,
     rigid_body_modes: usize,
+    margin: Margin,
     eigenvalues: Vec<Complex<f64>>,
+    accuracies: Vec<Accuracy>,
     oscillating: Vec<Complex<f64>>,
-    top: Complex<f64>,
+    top: Top,
     largest: f64,
 }
 
 impl Spectrum {
     /// Sorts eigenvalues, in 1/s: rigid-body zeros (|λ| ≤ 10⁻⁶ max |λ|) are dropped, one of each conjugate pair becomes
-    /// a mode, modes are ranked by Im λ. A mode whose conjugate is not given has one all the same.
+    /// a mode, modes are ranked by Im λ. A mode whose conjugate is not given has one all the same. They are taken to be
+    /// as accurate as a solver can make them.
     ///
     /// # Errors
     ///
     /// [`SpectrumError::OnlyRigid`] if no eigenvalue remains.
     pub fn new(eigenvalues: &[Complex<f64>]) -> Result<Self, SpectrumError> {
-        let largest = eigenvalues.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max);
+        Self::with_accuracies(eigenvalues, &[], Margin::default())
+    }
+
+    /// The same of eigenvalues of known accuracy, none if it is not known, which are judged with a margin. Growth rates
+    /// that cannot be told from zero are zero.
+    ///
+    /// # Errors
+    ///
+    /// As [`Spectrum::new`].
+    pub fn with_accuracies(
+        eigenvalues: &[Complex<f64>],
+        accuracies: &[Accuracy],
+        margin: Margin,
+    ) -> Result<Self, SpectrumError> {
+        let largest = largest(eigenvalues);
         let rigid = eigenvalues.iter().filter(|lambda| lambda.norm() <= RIGID * largest).count();
-        Self::without_rigid_body(eigenvalues.to_vec(), rigid)
+        let accuracies = match accuracies.len() == eigenvalues.len() {
+            true => accuracies.to_vec(),
+            false => vec![Accuracy::least(largest); eigenvalues.len()],
+        };
+        Self::without_rigid_body(eigenvalues.to_vec(), accuracies, rigid, margin)
     }
 
     /// The same eigenvalues with so many of them dropped as rigid-body motion, those with the smallest |λ|.
@@ -72,35 +113,46 @@ impl Spectrum {
     ///
     /// As [`Spectrum::new`].
     pub fn with_rigid_body_modes(self, count: usize) -> Result<Self, SpectrumError> {
-        if count == self.rigid_body_modes { Ok(self) } else { Self::without_rigid_body(self.all, count) }
+        match count == self.rigid_body_modes {
+            true => Ok(self),
+            false => Self::without_rigid_body(self.all, self.all_accuracies, count, self.margin),
+        }
     }
 
-    fn without_rigid_body(all: Vec<Complex<f64>>, rigid_body_modes: usize) -> Result<Self, SpectrumError> {
-        let largest = all.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max);
-        let kept = without_smallest(&all, rigid_body_modes);
-        let larger = |a: Complex<f64>, b: Complex<f64>| if b.re > a.re { b } else { a };
-        let top = kept.iter().copied().reduce(larger).ok_or(SpectrumError::OnlyRigid)?;
-        let is_real = |lambda: &Complex<f64>| lambda.im.abs() <= REAL * lambda.norm();
-        let mut oscillating: Vec<_> =
-            kept.iter().filter(|lambda| lambda.im > 0.0 && !is_real(lambda)).copied().collect();
-        oscillating.sort_by(|a, b| a.im.total_cmp(&b.im).then(a.re.total_cmp(&b.re)));
+    fn without_rigid_body(
+        all: Vec<Complex<f64>>,
+        all_accuracies: Vec<Accuracy>,
+        rigid_body_modes: usize,
+        margin: Margin,
+    ) -> Result<Self, SpectrumError> {
+        let largest = largest(&all);
+        let kept = positions_without_smallest(&all, rigid_body_modes);
+        let kept: Vec<Eigenvalue> = kept.iter().map(|&at| Eigenvalue::new(all[at], all_accuracies[at])).collect();
+        let top = top(&kept, margin).ok_or(SpectrumError::OnlyRigid)?;
+        let mut oscillating: Vec<Eigenvalue> = kept.iter().filter(|one| one.lambda.im > 0.0).copied().collect();
+        oscillating.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
         for k in 1..oscillating.len() {
-            let (before, after) = (oscillating[k - 1], oscillating[k]);
+            let (before, after) = (oscillating[k - 1].lambda, oscillating[k].lambda);
             if after.im - before.im <= EQUAL_FREQUENCY * largest && after.re < before.re {
                 oscillating.swap(k - 1, k);
             }
         }
-        let reals = kept.iter().filter(|lambda| is_real(lambda)).map(|lambda| Complex::new(lambda.re, 0.0));
+        let reals = kept.iter().filter(|one| one.lambda.im == 0.0).copied();
         // A pair is one entry until all are sorted.
-        let mut halves: Vec<_> = oscillating.iter().copied().chain(reals).collect();
-        halves.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-        let both = |lambda: Complex<f64>| match lambda.im == 0.0 {
-            true => vec![lambda],
-            false => vec![lambda, lambda.conj()],
-        };
-        let eigenvalues = halves.into_iter().flat_map(both).collect();
-        let top = if is_real(&top) { Complex::new(top.re, 0.0) } else { top };
-        Ok(Self { all, rigid_body_modes, eigenvalues, oscillating, top, largest })
+        let mut halves: Vec<Eigenvalue> = oscillating.iter().copied().chain(reals).collect();
+        halves.sort_by(|a, b| a.lambda.norm().total_cmp(&b.lambda.norm()));
+        let sorted = || halves.iter().flat_map(|one| one.with_conjugate());
+        Ok(Self {
+            eigenvalues: sorted().map(|one| one.lambda).collect(),
+            accuracies: sorted().map(|one| one.accuracy).collect(),
+            oscillating: oscillating.iter().map(|one| one.lambda).collect(),
+            all,
+            all_accuracies,
+            rigid_body_modes,
+            margin,
+            top,
+            largest,
+        })
     }
 
     /// The eigenvalues that are no rigid-body motion, one of each conjugate pair: enough to make the spectrum again.
@@ -118,7 +170,23 @@ impl Spectrum {
             true => vec![lambda],
             false => vec![lambda, lambda.conj()],
         };
-        Self::without_rigid_body(halves.iter().flat_map(both).collect(), 0)
+        let all: Vec<Complex<f64>> = halves.iter().flat_map(both).collect();
+        let accuracies = vec![Accuracy::default(); all.len()];
+        Self::without_rigid_body(all, accuracies, 0, Margin::default())
+    }
+
+    /// Why so many eigenvalues cannot all be rigid-body motion, those with the smallest |λ|; `None` if they can.
+    pub fn contradicts_rigid_body_modes(&self, count: usize) -> Option<String> {
+        let mut sizes: Vec<f64> = self.all.iter().map(|lambda| lambda.norm()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let Some(&next) = sizes.get(count) else {
+            return Some(format!("there are only {} eigenvalues", sizes.len()));
+        };
+        let largest_zero = count.checked_sub(1).map_or(0.0, |last| sizes[last]);
+        let is_zero = largest_zero <= RIGID * self.largest || largest_zero <= CLEARLY_SMALLER * next;
+        (!is_zero).then(|| {
+            format!("the eigenvalues with the smallest |λ| reach {largest_zero:.3e} 1/s and the next is {next:.3e} 1/s")
+        })
     }
 
     /// Number of eigenvalues that were dropped as rigid-body motion.
@@ -172,25 +240,77 @@ impl Spectrum {
         self.largest
     }
 
-    /// Spectral abscissa max Re λ over every eigenvalue that is not a rigid-body zero, real ones included, in 1/s. The
-    /// system is stable if it is negative.
-    pub fn max_re(&self) -> f64 {
-        self.top.re
+    /// The accuracy of every one of [`Spectrum::eigenvalues`].
+    pub fn accuracies(&self) -> &[Accuracy] {
+        &self.accuracies
     }
 
-    /// The eigenvalue with the largest Re λ. Unstable systems diverge if it is real, and flutter if it is not.
-    pub fn top(&self) -> Complex<f64> {
+    /// Spectral abscissa max Re λ over every eigenvalue that is not a rigid-body zero, real ones included, in 1/s.
+    pub fn max_re(&self) -> f64 {
+        self.top.max_re
+    }
+
+    /// What decides on stability: of all eigenvalues that are no rigid-body motion the one with the largest excess, Re
+    /// λ with the margin.
+    pub fn top(&self) -> Top {
         self.top
+    }
+
+    /// Whether all eigenvalues lie on the imaginary axis or symmetric to it, as far as can be told.
+    pub fn is_undamped(&self) -> bool {
+        let all = || self.eigenvalues.iter().zip(&self.accuracies);
+        let mirrors = |(lambda, own): (&Complex<f64>, &Accuracy)| {
+            all().any(|(other, accuracy)| (lambda + other.conj()).norm() <= own.whole + accuracy.whole)
+        };
+        all().all(mirrors)
+    }
+
+    /// The largest error of a growth rate that cannot be told from zero, in 1/s, if there is one that decides.
+    pub fn marginal_error(&self) -> Option<f64> {
+        let is_marginal = |lambda: &Complex<f64>, accuracy: &Accuracy| {
+            beyond_rounding(self.margin.excess(*lambda), accuracy.re) == 0.0
+        };
+        let decides = self.eigenvalues.iter().zip(&self.accuracies).filter(|(lambda, own)| is_marginal(lambda, own));
+        decides.map(|(_, accuracy)| accuracy.re).reduce(f64::max).filter(|_| self.top.excess == 0.0)
     }
 }
 
-/// All eigenvalues but so many with the smallest |λ|, in their order.
-pub(super) fn without_smallest(all: &[Complex<f64>], count: usize) -> Vec<Complex<f64>> {
-    let mut by_size: Vec<usize> = (0..all.len()).collect();
-    by_size.sort_by(|&a, &b| all[a].norm().total_cmp(&all[b].norm()).then(a.cmp(&b)));
-    let mut kept = by_size.split_off(count.min(all.len()));
-    kept.sort_unstable();
-    kept.into_iter().map(|at| all[at]).collect()
+/// Whether an eigenvalue is real but for rounding.
+pub(super) fn is_nearly_real(lambda: Complex<f64>) -> bool {
+    lambda.im.abs() <= REAL * lambda.norm()
+}
+
+/// One eigenvalue: real if it is nearly so, on the imaginary axis if it cannot be told from it.
+#[derive(Debug, Clone, Copy)]
+struct Eigenvalue {
+    lambda: Complex<f64>,
+    accuracy: Accuracy,
+}
+
+impl Eigenvalue {
+    fn new(lambda: Complex<f64>, accuracy: Accuracy) -> Self {
+        let im = if is_nearly_real(lambda) { 0.0 } else { lambda.im };
+        let lambda = Complex::new(beyond_rounding(lambda.re, accuracy.re), im);
+        Self { lambda, accuracy }
+    }
+
+    fn with_conjugate(self) -> impl Iterator<Item = Self> {
+        let conjugate = Self { lambda: self.lambda.conj(), ..self };
+        std::iter::once(self).chain(Some(conjugate).filter(|_| self.lambda.im != 0.0))
+    }
+}
+
+/// What decides, and by how much: nothing, where that is less than the accuracy of its growth rate.
+fn top(eigenvalues: &[Eigenvalue], margin: Margin) -> Option<Top> {
+    let excess = |one: &Eigenvalue| beyond_rounding(margin.excess(one.lambda), one.accuracy.re);
+    let larger = |a: Eigenvalue, b: Eigenvalue| if excess(&b) > excess(&a) { b } else { a };
+    let decides = eigenvalues.iter().copied().reduce(larger)?;
+    let max_re = eigenvalues.iter().map(|one| one.lambda.re).fold(f64::NEG_INFINITY, f64::max);
+    Some(Top { max_re, excess: excess(&decides), frequency: decides.lambda.im })
+}
+
+fn largest(eigenvalues: &[Complex<f64>]) -> f64 {
+    eigenvalues.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -236,7 +356,7 @@ mod tests {
         let expected = [(3.0, 0.0), (-5.0, 4.0), (-5.0, -4.0), (-1.0, 20.0), (-1.0, -20.0), (-30.0, 0.0)];
         assert_eq!(found.eigenvalues(), expected.map(|(re, im)| Complex::new(re, im)));
         assert_eq!((0..6).map(|at| found.conjugate(at)).collect::<Vec<_>>(), [0, 2, 1, 4, 3, 5]);
-        assert_eq!(found.top(), Complex::new(3.0, 0.0));
+        assert_eq!(found.top(), Top { max_re: 3.0, excess: 3.0, frequency: 0.0 });
     }
 
     #[test]

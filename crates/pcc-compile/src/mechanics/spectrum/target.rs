@@ -4,6 +4,10 @@ use super::clusters::{ClusterError, clusters};
 use super::modes::{Spectrum, SpectrumError};
 use nalgebra::Complex;
 use pcc_evaluate::components::{Component, Output, OutputKind};
+use std::f64::consts::TAU;
+
+/// Frequencies change by less than this factor over the inputs, as a rule: modes that may be in a band at some point.
+const AROUND_BAND: f64 = 2.0;
 
 /// What the components of a surrogate are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -218,20 +222,39 @@ fn power_of_two(size: f64) -> f64 {
 }
 
 /// Which modes a surrogate carries.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Modes {
     /// All that oscillate.
     All,
     /// Those with these frequency ranks, ascending, from 1.
     Ranks(Vec<usize>),
+    /// Those whose frequency in the middle of the inputs lies between these, in Hz.
+    Band([f64; 2]),
 }
 
 impl Modes {
-    /// The ranks that are not beyond `count`.
-    pub fn up_to(&self, count: usize) -> Vec<usize> {
+    /// The frequency ranks of those that may be meant in a spectrum somewhere among the inputs.
+    pub fn of_interest(&self, spectrum: &Spectrum) -> Vec<usize> {
+        let ranks = 1..=spectrum.count();
         match self {
-            Self::All => (1..=count).collect(),
-            Self::Ranks(ranks) => ranks.iter().copied().filter(|&mode| mode <= count).collect(),
+            Self::All => ranks.collect(),
+            Self::Ranks(ranks) => ranks.iter().copied().filter(|&mode| mode <= spectrum.count()).collect(),
+            Self::Band([lower, upper]) => {
+                let frequency = |rank: usize| spectrum.oscillating()[rank - 1].im / TAU;
+                let near = |rank: &usize| {
+                    let frequency = frequency(*rank);
+                    frequency >= lower / AROUND_BAND && frequency <= upper * AROUND_BAND
+                };
+                ranks.filter(near).collect()
+            }
+        }
+    }
+
+    /// Whether an eigenvalue in the middle of the inputs is meant, if that is a matter of its frequency.
+    pub fn has_frequency(&self, lambda: Complex<f64>) -> bool {
+        match self {
+            Self::Band([lower, upper]) => (*lower..=*upper).contains(&(lambda.im.abs() / TAU)),
+            Self::All | Self::Ranks(_) => true,
         }
     }
 
@@ -242,8 +265,8 @@ impl Modes {
     /// [`SpectrumError::NoSuchMode`] if a rank is beyond `count`.
     pub fn ranks(&self, count: usize) -> Result<Vec<usize>, SpectrumError> {
         match self {
-            Self::All if count == 0 => Err(SpectrumError::NoSuchMode { mode: 1, count }),
-            Self::All => Ok((1..=count).collect()),
+            Self::All | Self::Band(_) if count == 0 => Err(SpectrumError::NoSuchMode { mode: 1, count }),
+            Self::All | Self::Band(_) => Ok((1..=count).collect()),
             Self::Ranks(ranks) => match ranks.iter().find(|&&mode| mode > count) {
                 Some(&mode) => Err(SpectrumError::NoSuchMode { mode, count }),
                 None => Ok(ranks.clone()),

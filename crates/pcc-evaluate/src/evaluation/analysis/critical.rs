@@ -1,8 +1,8 @@
 //! The value of one input at which a system loses stability.
 //!
 //! For every random sample of the other inputs, the critical value of input j is the smallest value of its domain at
-//! which max Re λ ≥ 0. Its distribution says where a limit for this input has to lie so that, say, 99 % of all systems
-//! stay stable below it.
+//! which it is unstable, max Re λ > 0. Its distribution says where a limit for this input has to lie so that, say, 99 %
+//! of all systems stay stable below it.
 //!
 //! 1. max Re λ at the 65 ends of 64 equal cells of the input's domain, from below, until one is unstable. If it is the
 //!    first, the critical value is the lower bound; if there is none, there is no critical value.
@@ -21,11 +21,11 @@
 
 use super::bracket::{Bracket, End};
 use super::crossings::{Crossing, CrossingKey, Crossings};
-use crate::components::Label;
+use crate::components::{Label, Top};
 use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
 use crate::evaluation::kernel::plan::Plan;
-use crate::evaluation::kernel::points::{Evaluator, Top};
+use crate::evaluation::kernel::points::Evaluator;
 use crate::evaluation::questions::region::Region;
 use crate::foundation::Observer;
 use crate::probability::inputs::{Marginal, Uniform};
@@ -238,12 +238,20 @@ struct Walking {
 #[derive(Clone, Copy)]
 struct Point {
     end: End,
+    decides: Decides,
+}
+
+/// What decides at a point.
+#[derive(Clone, Copy)]
+struct Decides {
     top: Top,
+    /// Its position among the surrogate's labels.
+    position: usize,
 }
 
 impl Point {
     fn is_stable(&self) -> bool {
-        self.end.max_re < 0.0
+        self.end.excess <= 0.0
     }
 }
 
@@ -255,7 +263,7 @@ struct Changing {
     /// In coordinates that run from the stable to the unstable end: ξ where stability is lost, −ξ where it is regained.
     bracket: Bracket,
     /// What decides at the unstable end.
-    top: Top,
+    decides: Decides,
 }
 
 impl Changing {
@@ -269,8 +277,8 @@ impl Changing {
     }
 
     fn key(&self) -> CrossingKey {
-        let Top { position, frequency, .. } = self.top;
-        CrossingKey { order: self.order, loses: self.loses, position, is_real: frequency == 0.0 }
+        let Decides { top, position } = self.decides;
+        CrossingKey { order: self.order, loses: self.loses, position, is_real: top.frequency == 0.0 }
     }
 }
 
@@ -325,11 +333,11 @@ impl Search<'_> {
                 walking.changes += 1;
                 let mirrored = |end: End| End { xi: -end.xi, ..end };
                 let loses = before.is_stable();
-                let (bracket, top) = match loses {
-                    true => (Bracket::new(before.end, end.end), end.top),
-                    false => (Bracket::new(mirrored(end.end), mirrored(before.end)), before.top),
+                let (bracket, decides) = match loses {
+                    true => (Bracket::new(before.end, end.end), end.decides),
+                    false => (Bracket::new(mirrored(end.end), mirrored(before.end)), before.decides),
                 };
-                changing.push(Changing { sample, order: walking.changes, loses, bracket, top });
+                changing.push(Changing { sample, order: walking.changes, loses, bracket, decides });
             }
         }
         Ok(changing)
@@ -344,7 +352,7 @@ impl Search<'_> {
             for (one, found) in open.iter_mut().zip(self.evaluate(&trials)?) {
                 one.bracket.narrow(End { xi: one.xi(found.end.xi), ..found.end });
                 if !found.is_stable() {
-                    one.top = found.top;
+                    one.decides = found.decides;
                 }
             }
             open.retain(|one| !one.bracket.is_narrow());
@@ -360,14 +368,17 @@ impl Search<'_> {
             point[input] = xi;
         };
         let mut found = Vec::with_capacity(trials.len());
-        self.evaluator.tops(trials.len(), |number, point| set_point(trials[number], point), &mut found);
-        if let Some(at) = found.iter().position(|top| !top.max_re.is_finite()) {
+        self.evaluator.deciding(trials.len(), |number, point| set_point(trials[number], point), &mut found);
+        if let Some(at) = found.iter().position(|(top, _)| !top.max_re.is_finite()) {
             let inputs = &self.surrogate.inputs;
             let mut point = vec![0.0; inputs.dimension()];
             set_point(trials[at], &mut point);
             return Err(EvalError::NotFinite { point: inputs.describe(&inputs.physical(&point)) });
         }
-        let point = |(&(_, xi), top): (&(usize, f64), Top)| Point { end: End { xi, max_re: top.max_re }, top };
+        let point = |(&(_, xi), (top, position)): (&(usize, f64), (Top, usize))| Point {
+            end: End { xi, excess: top.excess },
+            decides: Decides { top, position },
+        };
         Ok(trials.iter().zip(found).map(point).collect())
     }
 }

@@ -1,4 +1,4 @@
-//! Which inputs the stability of a system depends on: Sobol' indices of max Re λ and of the indicator max Re λ < 0.
+//! Which inputs the stability of a system depends on: Sobol' indices of max Re λ and of the indicator of stability.
 //!
 //! Every component has its indices from the coefficients, but max Re λ is the largest of several and the indicator a
 //! step of it, so theirs are estimated from samples. For an output f of independent inputs and variance V, the
@@ -55,8 +55,8 @@ pub struct Sensitivities {
     pub samples: u64,
     /// Indices of the spectral abscissa max Re λ, per input; `None` if it did not vary between some pair's points.
     pub max_re: Option<Vec<Sensitivity>>,
-    /// Indices of the indicator max Re λ < 0, per input; `None` if it did not vary between some pair's points, because
-    /// all or nearly all samples are stable, or unstable.
+    /// Indices of the indicator of samples that are not unstable, per input; `None` if it did not vary between some
+    /// pair's points, because all or nearly all samples are stable, or unstable.
     pub stability: Option<Vec<Sensitivity>>,
 }
 
@@ -88,8 +88,8 @@ impl Estimate {
     }
 }
 
-/// Sobol' indices of max Re λ and of the indicator max Re λ < 0, per input in order, from `samples` samples under
-/// `seed`, on the current rayon thread pool.
+/// Sobol' indices of max Re λ and of the indicator of samples that are not unstable, per input in order, from `samples`
+/// samples under `seed`, on the current rayon thread pool.
 ///
 /// A_i is the point that [`monte_carlo`](fn@crate::evaluation::monte_carlo) evaluates as sample i under this seed, B_i
 /// what its stream yields next, so no number is used twice. The result is the same bits for any number of threads.
@@ -231,7 +231,7 @@ impl Choice {
 struct Column {
     /// max Re λ less its value in the middle of all inputs, so that little is lost to cancellation.
     max_re: Vec<f64>,
-    /// 1 if stable, 0 if not.
+    /// 0 if unstable, else 1.
     is_stable: Vec<f64>,
 }
 
@@ -273,15 +273,15 @@ impl Comparer<'_> {
         let set_point = |number: usize, point: &mut [f64]| {
             choice.set(&pairs[number * 2 * dimension..(number + 1) * 2 * dimension], point);
         };
-        self.evaluator.max_re(samples, set_point, &mut found);
-        if let Some(at) = found.iter().position(|&max_re| !is_usable(max_re)) {
+        self.evaluator.tops(samples, set_point, &mut found);
+        if let Some(at) = found.iter().position(|top| !is_usable(top.max_re)) {
             let mut point = vec![0.0; dimension];
             choice.set(&self.pairs[at * 2 * dimension..(at + 1) * 2 * dimension], &mut point);
             return Err(not_usable(&self.surrogate.inputs, &point));
         }
         Ok(Column {
-            max_re: found.iter().map(|max_re| max_re - self.center).collect(),
-            is_stable: found.iter().map(|&max_re| f64::from(max_re < 0.0)).collect(),
+            max_re: found.iter().map(|top| top.max_re - self.center).collect(),
+            is_stable: found.iter().map(|top| f64::from(top.excess <= 0.0)).collect(),
         })
     }
 }

@@ -13,7 +13,7 @@ use super::results::Results;
 use crate::components::Output;
 use crate::foundation::InstructionSet;
 use crate::polynomials::Mesh;
-use crate::surrogate::Surrogate;
+use crate::surrogate::{Surrogate, VerdictBasis};
 use pulp::{Simd, WithSimd};
 
 /// A compiled surrogate.
@@ -38,6 +38,7 @@ pub struct Plan {
     instructions: InstructionSet,
     mesh: Mesh,
     outputs: Vec<Output>,
+    verdict: VerdictBasis,
     dimension: usize,
     eigenvalues: usize,
     /// One per element.
@@ -79,6 +80,7 @@ impl Plan {
             instructions,
             mesh: surrogate.mesh.clone(),
             outputs: surrogate.outputs.clone(),
+            verdict: surrogate.verdict,
             dimension: surrogate.inputs.dimension(),
             eigenvalues: surrogate.labels().len(),
             operations: elements.map(|element| Operations::new(surrogate, element)).collect(),
@@ -121,6 +123,7 @@ impl Plan {
                 growth_rates: lanes(self.eigenvalues),
                 angular_frequencies: lanes(self.eigenvalues),
                 max_re: Lanes::splat(0.0),
+                excess: Lanes::splat(0.0),
                 top_frequency: Lanes::splat(1.0),
             },
         }
@@ -133,7 +136,11 @@ impl Plan {
     /// If there are not that many elements.
     pub fn evaluate(&self, element: usize, workspace: &mut Workspace) {
         self.evaluate_components(element, workspace);
-        self.instructions.run(Recombining { outputs: &self.outputs, results: &mut workspace.results });
+        self.instructions.run(Recombining {
+            outputs: &self.outputs,
+            verdict: self.verdict,
+            results: &mut workspace.results,
+        });
     }
 
     /// The components alone.
@@ -167,6 +174,7 @@ impl WithSimd for Evaluating<'_> {
 
 struct Recombining<'a> {
     outputs: &'a [Output],
+    verdict: VerdictBasis,
     results: &'a mut Results,
 }
 
@@ -175,6 +183,6 @@ impl WithSimd for Recombining<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        recombine(self.outputs, self.results);
+        recombine(self.outputs, self.verdict, self.results);
     }
 }

@@ -3,7 +3,7 @@
 use super::lanes::{BLOCK_POINTS, Lanes};
 use super::plan::{Plan, Workspace};
 use super::results::Results;
-use crate::components::Block;
+use crate::components::{Block, Top};
 use crate::surrogate::Surrogate;
 use num_complex::Complex;
 
@@ -74,21 +74,24 @@ impl<'a> Evaluator<'a> {
         self.each_block(count, fill, |results, lanes| append(results, lanes, block));
     }
 
-    /// Evaluates `count` points and appends max Re λ to `list`.
-    pub fn max_re(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<f64>) {
-        let fill = in_lanes(count, self.point.len(), set_point);
-        self.each_block(count, fill, |results, lanes| list.extend_from_slice(&results.max_re.0[..lanes]));
-    }
-
     /// Evaluates `count` points and appends what decides at each to `list`.
     pub fn tops(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<Top>) {
         let fill = in_lanes(count, self.point.len(), set_point);
+        self.each_block(count, fill, |results, lanes| list.extend((0..lanes).map(|lane| top(results, lane))));
+    }
+
+    /// The same with the position among the surrogate's labels of the eigenvalue that decides.
+    pub fn deciding(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<(Top, usize)>) {
+        let margin = self.surrogate.verdict.margin;
+        let fill = in_lanes(count, self.point.len(), set_point);
         self.each_block(count, fill, |results, lanes| {
             for lane in 0..lanes {
-                let max_re = results.max_re.0[lane];
-                let position = results.growth_rates.iter().position(|re| re.0[lane] == max_re);
-                let frequency = results.top_frequency.0[lane];
-                list.push(Top { max_re, position: position.unwrap_or_default(), frequency });
+                let excess = |k: usize| {
+                    margin.excess(Complex::new(results.growth_rates[k].0[lane], results.angular_frequencies[k].0[lane]))
+                };
+                let larger = |a: usize, b: usize| if excess(b) > excess(a) { b } else { a };
+                let position = (0..results.growth_rates.len()).reduce(larger).unwrap_or_default();
+                list.push((top(results, lane), position));
             }
         });
     }
@@ -162,15 +165,9 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// The eigenvalue with the largest Re λ at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Top {
-    /// Its Re λ, in 1/s.
-    pub max_re: f64,
-    /// Its position among the surrogate's labels.
-    pub position: usize,
-    /// 0 if it is real.
-    pub frequency: f64,
+/// What decides in a lane.
+fn top(results: &Results, lane: usize) -> Top {
+    Top { max_re: results.max_re.0[lane], excess: results.excess.0[lane], frequency: results.top_frequency.0[lane] }
 }
 
 /// Writes points that are set one by one into lanes.
@@ -198,6 +195,7 @@ fn copy_lane(from: &Results, lane: usize, to: &mut Results, target: usize) {
         from.iter().zip(to).for_each(|(from, to)| to.0[target] = from.0[lane]);
     }
     to.max_re.0[target] = from.max_re.0[lane];
+    to.excess.0[target] = from.excess.0[lane];
     to.top_frequency.0[target] = from.top_frequency.0[lane];
 }
 
@@ -210,6 +208,7 @@ fn append(results: &Results, lanes: usize, block: &mut Block) {
         list.extend(re.0[..lanes].iter().zip(&im.0).map(|(&re, &im)| Complex::new(re, im)));
     }
     block.max_re.extend_from_slice(&results.max_re.0[..lanes]);
+    block.excess.extend_from_slice(&results.excess.0[..lanes]);
     block.top_frequency.extend_from_slice(&results.top_frequency.0[..lanes]);
 }
 

@@ -6,13 +6,16 @@
 
 use super::lanes::{BLOCK_POINTS, Lanes};
 use super::results::Results;
-use crate::components::{Output, OutputKind, closed_pair, is_equal_frequency, is_safe_square, square_root};
+use crate::components::{
+    Margin, Output, OutputKind, beyond_rounding, closed_pair, is_equal_frequency, is_safe_square, square_root,
+};
+use crate::surrogate::VerdictBasis;
 use num_complex::Complex;
 
-/// Fills in eigenvalues and max Re λ, given the components.
+/// Fills in eigenvalues, max Re λ and the largest excess, given the components.
 #[inline(always)]
-pub(crate) fn recombine(outputs: &[Output], results: &mut Results) {
-    let Results { components, growth_rates, angular_frequencies, max_re, top_frequency } = results;
+pub(crate) fn recombine(outputs: &[Output], verdict: VerdictBasis, results: &mut Results) {
+    let Results { components, growth_rates, angular_frequencies, max_re, excess, top_frequency } = results;
     let (mut first, mut some_are_closed) = (0, false);
     for output in outputs {
         let own = first..first + output.eigenvalue_count();
@@ -33,9 +36,14 @@ pub(crate) fn recombine(outputs: &[Output], results: &mut Results) {
         }
     }
     *max_re = spectral_abscissa(growth_rates, angular_frequencies);
+    *excess = match verdict.margin.is_none() {
+        true => *max_re,
+        false => largest_excess(growth_rates, angular_frequencies, verdict.margin),
+    };
     if some_are_closed {
-        *top_frequency = frequency_of_largest(growth_rates, angular_frequencies, max_re);
+        *top_frequency = frequency_of_largest(growth_rates, angular_frequencies, verdict.margin, excess);
     }
+    excess.0.iter_mut().for_each(|excess| *excess = beyond_rounding(*excess, verdict.tolerance));
 }
 
 /// λ² − e₁ λ + e₂ = 0.
@@ -49,18 +57,52 @@ fn closed_pairs(symmetric: [&Lanes; 2], re: [&mut Lanes; 2], im: [&mut Lanes; 2]
     }
 }
 
-/// Im λ of the first eigenvalue with Re λ = max Re λ.
+/// Im λ of the first eigenvalue with the largest excess.
 #[inline(always)]
-fn frequency_of_largest(growth_rates: &[Lanes], angular_frequencies: &[Lanes], max_re: &Lanes) -> Lanes {
+fn frequency_of_largest(
+    growth_rates: &[Lanes],
+    angular_frequencies: &[Lanes],
+    margin: Margin,
+    largest: &Lanes,
+) -> Lanes {
     let mut found = Lanes::splat(0.0);
     for (re, im) in growth_rates.iter().zip(angular_frequencies).rev() {
+        let excess = excesses(re, im, margin);
         for lane in 0..BLOCK_POINTS {
-            if re.0[lane] == max_re.0[lane] {
+            if excess.0[lane] == largest.0[lane] {
                 found.0[lane] = im.0[lane];
             }
         }
     }
     found
+}
+
+/// The excess of one eigenvalue in every lane.
+#[inline(always)]
+pub(crate) fn excesses(growth_rate: &Lanes, angular_frequency: &Lanes, margin: Margin) -> Lanes {
+    if margin.is_none() {
+        return *growth_rate;
+    }
+    let mut excess = Lanes::splat(0.0);
+    for lane in 0..BLOCK_POINTS {
+        excess.0[lane] = margin.excess(Complex::new(growth_rate.0[lane], angular_frequency.0[lane]));
+    }
+    excess
+}
+
+/// The largest excess; NaN where any part of an eigenvalue is NaN or infinite.
+#[inline(always)]
+fn largest_excess(growth_rates: &[Lanes], angular_frequencies: &[Lanes], margin: Margin) -> Lanes {
+    let mut largest = Lanes::splat(f64::NEG_INFINITY);
+    for (re, im) in growth_rates.iter().zip(angular_frequencies) {
+        let excess = excesses(re, im, margin);
+        for lane in 0..BLOCK_POINTS {
+            let (here, before) = (excess.0[lane], largest.0[lane]);
+            let larger = if here > before { here } else { before };
+            largest.0[lane] = if here.abs() < f64::INFINITY { larger } else { f64::NAN };
+        }
+    }
+    largest
 }
 
 /// λ = s ± √−c_0, by frequency.
@@ -172,12 +214,13 @@ mod tests {
                 growth_rates: vec![Lanes::splat(0.0); 2],
                 angular_frequencies: vec![Lanes::splat(0.0); 2],
                 max_re: Lanes::splat(0.0),
+                excess: Lanes::splat(0.0),
                 top_frequency: Lanes::splat(1.0),
             };
             for (lane, case) in chunk.iter().enumerate() {
                 (0..4).for_each(|id| results.components[id].0[lane] = case[id]);
             }
-            recombine(std::slice::from_ref(&output), &mut results);
+            recombine(std::slice::from_ref(&output), VerdictBasis::default(), &mut results);
             for (lane, case) in chunk.iter().enumerate() {
                 let mut expected = Vec::new();
                 output.recombine(case, &mut expected);
@@ -209,12 +252,13 @@ mod tests {
                 growth_rates: vec![Lanes::splat(0.0); count],
                 angular_frequencies: vec![Lanes::splat(0.0); count],
                 max_re: Lanes::splat(0.0),
+                excess: Lanes::splat(0.0),
                 top_frequency: Lanes::splat(1.0),
             };
             for lane in 0..BLOCK_POINTS {
                 (0..count).for_each(|id| results.components[id].0[lane] = value(lane, id));
             }
-            recombine(std::slice::from_ref(&output), &mut results);
+            recombine(std::slice::from_ref(&output), VerdictBasis::default(), &mut results);
             for lane in 0..BLOCK_POINTS {
                 let case: Vec<f64> = (0..count).map(|id| value(lane, id)).collect();
                 let mut expected = Vec::new();

@@ -13,7 +13,10 @@ pub struct Results {
     pub angular_frequencies: Vec<Lanes>,
     /// max Re λ, in 1/s; NaN where a part of an eigenvalue is not finite.
     pub max_re: Lanes,
-    /// Im λ of the eigenvalue with the largest Re λ, in rad/s: 0 where it is real. Of surrogates whose eigenvalues are
-    /// all modes that oscillate it is not looked for, and not 0.
+    /// The largest excess ([`crate::components::Margin`]), in 1/s: max Re λ without a margin; 0 where it cannot be told
+    /// from zero.
+    pub excess: Lanes,
+    /// Im λ of the eigenvalue with the largest excess, in rad/s: 0 where it is real. Of surrogates whose eigenvalues
+    /// are all modes that oscillate it is not looked for, and not 0.
     pub top_frequency: Lanes,
 }

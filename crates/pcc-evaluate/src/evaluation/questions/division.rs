@@ -83,16 +83,17 @@ impl Division {
     pub(crate) fn fits(&self, chunks: &Range<u64>, tally: &Tally) -> bool {
         let summary = &tally.summary;
         let samples = self.samples_in(chunks);
-        let of_eigenvalues = summary.eigenvalues.iter().flat_map(|own| [own.unstable, own.real]);
+        let of_eigenvalues =
+            summary.eigenvalues.iter().flat_map(|own| [own.unstable.saturating_add(own.marginal), own.real]);
         let counts = tally.events.iter().copied().chain(of_eigenvalues).chain(summary.stable_if_shifted);
         let diverging = summary.eigenvalues.iter().map(|own| (own.divergent, own.unstable.min(own.real)));
-        let diverges = (summary.divergent, samples.saturating_sub(summary.stable));
+        let diverges = (summary.divergent, summary.unstable);
         summary.components.len() == self.components
             && summary.eigenvalues.len() == self.eigenvalues
             && diverging.chain([diverges]).all(|(divergent, most)| divergent <= most)
             && tally.events.len() == self.events
             && summary.moments().all(|moments| moments.are_of(samples))
-            && counts.chain([summary.stable]).all(|count| count <= samples)
+            && counts.chain([summary.stable.saturating_add(summary.unstable)]).all(|count| count <= samples)
     }
 }
 

@@ -90,7 +90,7 @@ impl Pilot {
             Quantity::Frequency(at) => (&summary.eigenvalues[at].angular_frequency, 1.0 / TAU),
             Quantity::DampingRatio(at) => (&summary.eigenvalues[at].damping_ratio, 1.0),
             Quantity::Component(id) => (&summary.components[id], 1.0),
-            Quantity::Flutter | Quantity::Divergence => (&summary.max_re, 1.0),
+            Quantity::Flutter | Quantity::Divergence | Quantity::Marginal => (&summary.max_re, 1.0),
         }
     }
 }

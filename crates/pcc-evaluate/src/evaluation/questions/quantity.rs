@@ -6,9 +6,10 @@ use crate::evaluation::kernel::results::Results;
 use crate::surrogate::Surrogate;
 use std::f64::consts::TAU;
 
-/// Names of the kinds of instability, which are events by themselves.
+/// Names of verdicts, which are events by themselves.
 pub(super) const FLUTTER: &str = "flutter";
 pub(super) const DIVERGENCE: &str = "divergence";
+pub(super) const MARGINAL: &str = "marginal";
 
 /// A number that every sample has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,16 +26,18 @@ pub enum Quantity {
     DampingRatio(usize),
     /// A component by id: its own name.
     Component(usize),
-    /// 1 where the eigenvalue with the largest Re λ is unstable and oscillates, else 0: `flutter`.
+    /// 1 where the eigenvalue that decides is unstable and oscillates, else 0: `flutter`.
     Flutter,
-    /// 1 where the eigenvalue with the largest Re λ is unstable and real, else 0: `divergence`.
+    /// 1 where the eigenvalue that decides is unstable and real, else 0: `divergence`.
     Divergence,
+    /// 1 where the eigenvalue that decides neither grows nor decays, else 0: `marginal`.
+    Marginal,
 }
 
 impl Quantity {
     /// The quantity of this name; `None` if the surrogate has none such.
     pub fn named(name: &str, surrogate: &Surrogate) -> Option<Self> {
-        let kinds = [Self::Flutter, Self::Divergence];
+        let kinds = [Self::Flutter, Self::Divergence, Self::Marginal];
         Self::all(surrogate).into_iter().chain(kinds).find(|quantity| quantity.name(surrogate) == name)
     }
 
@@ -73,6 +76,7 @@ impl Quantity {
             }
             Self::Flutter => FLUTTER.to_owned(),
             Self::Divergence => DIVERGENCE.to_owned(),
+            Self::Marginal => MARGINAL.to_owned(),
         }
     }
 
@@ -90,19 +94,19 @@ impl Quantity {
             }
             Self::DampingRatio(mode) => damping_ratios(&results.growth_rates[mode], &results.angular_frequencies[mode]),
             Self::Component(id) => results.components[id],
-            Self::Flutter => indicator(results, |frequency| frequency != 0.0),
-            Self::Divergence => indicator(results, |frequency| frequency == 0.0),
+            Self::Flutter => indicator(results, |excess, frequency| excess > 0.0 && frequency != 0.0),
+            Self::Divergence => indicator(results, |excess, frequency| excess > 0.0 && frequency == 0.0),
+            Self::Marginal => indicator(results, |excess, _| excess == 0.0),
         }
     }
 }
 
-/// 1 where the largest Re λ is not negative and its Im λ as it should be.
+/// 1 where the largest excess and Im λ of its eigenvalue are as they should be.
 #[inline(always)]
-fn indicator(results: &Results, is_kind: impl Fn(f64) -> bool) -> Lanes {
+fn indicator(results: &Results, holds: impl Fn(f64, f64) -> bool) -> Lanes {
     let mut found = Lanes::splat(0.0);
     for lane in 0..BLOCK_POINTS {
-        let holds = results.max_re.0[lane] >= 0.0 && is_kind(results.top_frequency.0[lane]);
-        found.0[lane] = if holds { 1.0 } else { 0.0 };
+        found.0[lane] = if holds(results.excess.0[lane], results.top_frequency.0[lane]) { 1.0 } else { 0.0 };
     }
     found
 }

@@ -3,7 +3,7 @@
 //! A [`Question`] is plain text and numbers, as typed and as kept in part files; [`crate::evaluation::Survey`] checks
 //! it against a surrogate.
 
-use super::quantity::{DIVERGENCE, FLUTTER};
+use super::quantity::{DIVERGENCE, FLUTTER, MARGINAL};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of instability are numbers, 1 or 0.
@@ -125,7 +125,7 @@ pub struct Event {
 impl Event {
     /// A kind of instability by its name, `flutter` or `divergence`; `None` if it is no such name.
     pub fn of_kind(name: &str) -> Option<Self> {
-        let is_kind = [FLUTTER, DIVERGENCE].contains(&name);
+        let is_kind = [FLUTTER, DIVERGENCE, MARGINAL].contains(&name);
         is_kind.then(|| Self { quantity: name.to_owned(), below: false, threshold: KIND_THRESHOLD })
     }
 

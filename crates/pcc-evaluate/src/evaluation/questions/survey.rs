@@ -204,7 +204,8 @@ impl<'s> Worker<'s> {
         let count = (samples.end - samples.start) as usize;
         let Division { components, eigenvalues, .. } = survey.division;
         let (shifts, has_reals) = (survey.surrogate.decision.band_shifts(), survey.surrogate.has_real_eigenvalues());
-        let mut gathering = Gathering::new((components, eigenvalues), has_reals, shifts, &survey.watches);
+        let judged = (survey.surrogate.verdict, shifts);
+        let mut gathering = Gathering::new((components, eigenvalues), has_reals, judged, &survey.watches);
         let region = survey.regions.at(cell);
         let draw = |start, points: &mut [_]| survey.draw(&region, replicate, samples.start + start as u64, points);
         let add = |results: &Results, lanes| {

@@ -4,10 +4,12 @@
 //! the width of the processor's vectors: the bits are the same everywhere.
 
 use super::quantity::{Quantity, damping_ratios};
-use crate::components::{EigenvalueSummary, Summary};
+use crate::components::{EigenvalueSummary, Summary, beyond_rounding};
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
+use crate::evaluation::kernel::recombination::excesses;
 use crate::evaluation::kernel::results::Results;
 use crate::probability::statistics::{Merge, Moments};
+use crate::surrogate::VerdictBasis;
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
@@ -50,6 +52,8 @@ pub(crate) struct Watch {
 /// Sums over the samples of a chunk.
 #[derive(Debug, Clone)]
 pub(crate) struct Gathering<'a> {
+    /// What eigenvalues are judged by.
+    verdict: VerdictBasis,
     /// Errors of max Re λ that could be, in 1/s.
     shifts: [f64; 2],
     watches: &'a [Watch],
@@ -57,6 +61,7 @@ pub(crate) struct Gathering<'a> {
     has_reals: bool,
     count: u64,
     stable: u64,
+    unstable: u64,
     divergent: u64,
     stable_if_shifted: [u64; 2],
     events: Vec<u64>,
@@ -72,6 +77,7 @@ struct EigenvalueSums {
     angular_frequency: Sums,
     damping_ratio: Sums,
     unstable: u64,
+    marginal: u64,
     real: u64,
     divergent: u64,
 }
@@ -92,7 +98,7 @@ impl<'a> Gathering<'a> {
     pub fn new(
         (components, eigenvalues): (usize, usize),
         has_reals: bool,
-        shifts: [f64; 2],
+        (verdict, shifts): (VerdictBasis, [f64; 2]),
         watches: &'a [Watch],
     ) -> Self {
         let none = EigenvalueSums {
@@ -100,15 +106,18 @@ impl<'a> Gathering<'a> {
             angular_frequency: Sums::NONE,
             damping_ratio: Sums::NONE,
             unstable: 0,
+            marginal: 0,
             real: 0,
             divergent: 0,
         };
         Self {
+            verdict,
             shifts,
             watches,
             has_reals,
             count: 0,
             stable: 0,
+            unstable: 0,
             divergent: 0,
             stable_if_shifted: [0; 2],
             events: vec![0; watches.len()],
@@ -132,11 +141,13 @@ impl<'a> Gathering<'a> {
             angular_frequency: moments(&sums.angular_frequency),
             damping_ratio: moments(&sums.damping_ratio),
             unstable: sums.unstable,
+            marginal: sums.marginal,
             real: sums.real,
             divergent: sums.divergent,
         };
         let summary = Summary {
             stable: self.stable,
+            unstable: self.unstable,
             divergent: self.divergent,
             stable_if_shifted: self.stable_if_shifted,
             max_re: moments(&self.max_re),
@@ -160,13 +171,14 @@ impl WithSimd for Adding<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { gathering, results, lanes } = self;
-        let max_re = &results.max_re;
+        let (max_re, excess) = (&results.max_re, &results.excess);
         let is_first = gathering.count == 0;
         gathering.count += lanes as u64;
         gathering.is_finite &= count(max_re, lanes, |value| value.abs() < f64::INFINITY) == lanes as u64;
-        gathering.stable += count(max_re, lanes, |value| value < 0.0);
+        gathering.stable += count(excess, lanes, |value| value < 0.0);
+        gathering.unstable += count(excess, lanes, |value| value > 0.0);
         for (counted, shift) in gathering.stable_if_shifted.iter_mut().zip(gathering.shifts) {
-            *counted += count(max_re, lanes, |value| value + shift < 0.0);
+            *counted += count(excess, lanes, |value| (value != 0.0) & (value + shift < 0.0));
         }
         for (counted, watch) in gathering.events.iter_mut().zip(gathering.watches) {
             let (values, threshold) = (watch.quantity.values(results), watch.threshold);
@@ -180,17 +192,21 @@ impl WithSimd for Adding<'_, '_> {
             sums.add(values, lanes, is_first);
         }
         if gathering.has_reals {
-            gathering.divergent += count_both(max_re, &results.top_frequency, lanes, |re, im| re >= 0.0 && im == 0.0);
+            gathering.divergent +=
+                count_both(excess, &results.top_frequency, lanes, |excess, im| excess > 0.0 && im == 0.0);
         }
         let eigenvalues = results.growth_rates.iter().zip(&results.angular_frequencies);
         for (sums, (growth_rate, angular_frequency)) in gathering.eigenvalues.iter_mut().zip(eigenvalues) {
             sums.growth_rate.add(growth_rate, lanes, is_first);
             sums.angular_frequency.add(angular_frequency, lanes, is_first);
             sums.damping_ratio.add(&damping_ratios(growth_rate, angular_frequency), lanes, is_first);
-            sums.unstable += count(growth_rate, lanes, |value| value >= 0.0);
+            let mut excess = excesses(growth_rate, angular_frequency, gathering.verdict.margin);
+            excess.0.iter_mut().for_each(|excess| *excess = beyond_rounding(*excess, gathering.verdict.tolerance));
+            sums.unstable += count(&excess, lanes, |value| value > 0.0);
+            sums.marginal += count(&excess, lanes, |value| value == 0.0);
             if gathering.has_reals {
                 sums.real += count(angular_frequency, lanes, |value| value == 0.0);
-                sums.divergent += count_both(growth_rate, angular_frequency, lanes, |re, im| re >= 0.0 && im == 0.0);
+                sums.divergent += count_both(&excess, angular_frequency, lanes, |excess, im| excess > 0.0 && im == 0.0);
             }
         }
     }

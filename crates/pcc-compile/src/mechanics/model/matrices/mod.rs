@@ -18,7 +18,7 @@ use super::second_order::{Linearization, SecondOrder};
 use super::{Model, ModelError};
 use crate::numerics::eigenvalues::eigenvalues;
 use assembly::Assembly;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 use pcc_expressions::{Derivative, Evaluated, Program, Workspace};
 use std::sync::{Mutex, PoisonError};
 
@@ -128,13 +128,13 @@ impl Matrices {
         Err(MatricesError::Slope { matrix, place, text: text.clone(), input, value })
     }
 
-    fn state_matrix(&self, values: &[f64]) -> Result<DMatrix<f64>, ModelError> {
+    fn system_at(&self, values: &[f64]) -> Result<Linearization, ModelError> {
         match &self.system {
             System::SecondOrder { mass, damping, stiffness } => {
                 let [mass, damping, stiffness] = [mass, damping, stiffness].map(|matrix| matrix.value(values));
-                SecondOrder { mass, damping, stiffness }.state_matrix()
+                SecondOrder { mass, damping, stiffness }.linearization(Vec::new())
             }
-            System::FirstOrder(state) => Ok(state.value(values)),
+            System::FirstOrder(state) => Ok(Linearization::first_order(state.value(values), Vec::new())),
         }
     }
 
@@ -158,24 +158,32 @@ impl Matrices {
                 };
                 let derivatives: Vec<SecondOrder> = by_input.map(derivative).collect();
                 let [mass, damping, stiffness] = [mass, damping, stiffness].map(|matrix| matrix.value(values));
-                SecondOrder { mass, damping, stiffness }.linearization(&derivatives)
+                SecondOrder { mass, damping, stiffness }.linearization(derivatives)
             }
-            System::FirstOrder(state) => Ok(Linearization {
-                state_matrix: state.value(values),
-                derivatives: by_input.map(|slopes| state.derivative(values, &slopes)).collect(),
-            }),
+            System::FirstOrder(state) => {
+                let derivatives = by_input.map(|slopes| state.derivative(values, &slopes)).collect();
+                Ok(Linearization::first_order(state.value(values), derivatives))
+            }
         }
     }
 }
 
 impl Model for Matrices {
     fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
-        let state_matrix = self.with_workspace(|workspace| {
+        let system = self.with_workspace(|workspace| {
             let values = self.program.evaluate(point, workspace);
             self.check(values)?;
-            self.state_matrix(values)
+            self.system_at(values)
         })?;
-        Ok(eigenvalues(state_matrix)?)
+        Ok(eigenvalues(system.state_matrix)?)
+    }
+
+    fn system(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
+        self.with_workspace(|workspace| {
+            let values = self.program.evaluate(point, workspace);
+            self.check(values)?;
+            self.system_at(values).map(Some)
+        })
     }
 
     fn has_derivatives(&self) -> bool {

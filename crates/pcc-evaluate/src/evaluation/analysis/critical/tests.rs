@@ -89,14 +89,21 @@ fn systems_that_are_never_unstable_have_no_critical_value() {
 
 #[test]
 fn systems_that_are_always_unstable_have_the_lower_bound() {
-    // max Re λ = 0 is not stable.
-    for growth_rate in [0.0, 3.0] {
+    // What grows at all is unstable.
+    for growth_rate in [1e-300, 3.0] {
         let always = surrogate(inputs(&[(0.1, 0.7), (0.0, 1.0)]), vec![expansion(&[(&[0, 0], growth_rate)])]);
         let found = critical_values(&always, 0, 3000, 1, &Silent).unwrap();
         assert_eq!((found.never, found.unstable_from_start), (0, 3000));
         assert_eq!((found.mean(), found.minimum(), found.maximum()), (Some(0.1), Some(0.1), Some(0.1)));
         assert_eq!(CRITICAL_LEVELS.map(|level| found.quantile(level)), [Some(0.1); 7]);
     }
+}
+
+#[test]
+fn systems_that_are_marginal_everywhere_lose_nothing() {
+    let undamped = surrogate(inputs(&[(0.1, 0.7)]), vec![expansion(&[(&[0], 0.0)])]);
+    let found = critical_values(&undamped, 0, 3000, 1, &Silent).unwrap();
+    assert_eq!((found.never, found.unstable_from_start), (3000, 0));
 }
 
 #[test]

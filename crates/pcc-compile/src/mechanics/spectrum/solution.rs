@@ -1,0 +1,177 @@
+//! The eigenvalues of a system with their accuracy, refined where the solver's digits do not reach.
+//!
+//! Most eigenvalues are far from deciding anything: their accuracy is looked at only where the growth rate is small
+//! beside the whole spectrum, where eigenvalues come as λ and −λ̄, as those of undamped systems do, and where they are
+//! slow. Of those that turn out to be known too badly, second-order systems have the quadratic problem to refine them
+//! on (`refinement.rs`).
+
+use super::refinement::{QuadraticProblem, Refined};
+use crate::mechanics::model::SecondOrder;
+use crate::numerics::accuracy::Accuracy;
+use crate::numerics::eigenvalues::{EigenvalueError, SchurForm};
+use nalgebra::{Complex, DMatrix, DVector};
+use std::sync::OnceLock;
+
+/// Growth rates up to this share of the largest |λ| are looked at: errors of simple eigenvalues are far below.
+const NEAR_AXIS: f64 = 1e-6;
+
+/// So are eigenvalues up to this share of it: their errors are larger by its reciprocal.
+const SLOW: f64 = 1e-3;
+
+/// Relative errors of eigenvalues up to this are good enough.
+const ACCURATE: f64 = 1e-9;
+
+/// A growth rate that cannot be told from zero is refined if its error is so many times what no solver avoids.
+const WORTH_REFINING: f64 = 100.0;
+
+/// The eigenvalues of one system.
+#[derive(Debug)]
+pub struct Solution {
+    schur: SchurForm,
+    second_order: Option<SecondOrder>,
+    eigenvalues: Vec<Complex<f64>>,
+    accuracies: Vec<Accuracy>,
+    refined: Vec<Option<Refined>>,
+    /// All others refined, too, if ever they are asked for.
+    all_refined: OnceLock<Vec<Option<Refined>>>,
+}
+
+impl Solution {
+    /// The eigenvalues of a state matrix, which is that of a second-order system or not.
+    ///
+    /// # Errors
+    ///
+    /// As [`SchurForm::new`].
+    pub fn new(state_matrix: DMatrix<f64>, second_order: Option<SecondOrder>) -> Result<Self, EigenvalueError> {
+        let schur = SchurForm::new(state_matrix)?;
+        let eigenvalues = schur.eigenvalues();
+        let least = Accuracy::least(largest(&eigenvalues));
+        let count = eigenvalues.len();
+        let (accuracies, refined) = (vec![least; count], vec![None; count]);
+        Ok(Self { schur, second_order, eigenvalues, accuracies, refined, all_refined: OnceLock::new() })
+    }
+
+    /// Looks at the accuracy of all eigenvalues but `rigid_body_modes`, those with the smallest |λ|, and refines what
+    /// needs it.
+    pub fn look_closer(&mut self, rigid_body_modes: usize) {
+        let kept = positions_without_smallest(&self.eigenvalues, rigid_body_modes);
+        let largest = largest(&self.eigenvalues);
+        let is_suspect = |at: usize| {
+            let lambda = self.eigenvalues[at];
+            let mirrors = |other: &usize| (lambda + self.eigenvalues[*other].conj()).norm() <= NEAR_AXIS * largest;
+            lambda.im >= 0.0 && (lambda.norm() <= SLOW * largest || kept.iter().any(mirrors))
+        };
+        let suspects: Vec<usize> = kept.iter().copied().filter(|&at| is_suspect(at)).collect();
+        for (&at, accuracy) in suspects.iter().zip(self.schur.accuracies(&suspects)) {
+            self.set(at, self.eigenvalues[at], accuracy, None);
+        }
+        let Some(second_order) = self.second_order.take() else { return };
+        let problem = QuadraticProblem::new(&second_order);
+        let worth = WORTH_REFINING * Accuracy::least(1.0).re;
+        let mut found: Vec<(usize, Refined)> = Vec::new();
+        for at in suspects {
+            let (lambda, accuracy) = (self.eigenvalues[at], self.accuracies[at]);
+            let is_undecided = lambda.re.abs() <= accuracy.re && accuracy.re > worth * lambda.norm();
+            if is_undecided || accuracy.whole > ACCURATE * lambda.norm() {
+                found.extend(self.refine(&problem, at).map(|refined| (at, refined)));
+            }
+        }
+        // Two that end at the same place are one that was found twice, and one that was not found.
+        let is_distinct = |(at, one): &(usize, Refined)| {
+            found.iter().all(|(other, two)| {
+                other == at || (one.eigenvalue - two.eigenvalue).norm() > ACCURATE * one.eigenvalue.norm()
+            })
+        };
+        let distinct: Vec<bool> = found.iter().map(is_distinct).collect();
+        for ((at, refined), _) in found.into_iter().zip(distinct).filter(|(_, is_distinct)| *is_distinct) {
+            self.set(at, refined.eigenvalue, refined.accuracy, Some(refined));
+        }
+        self.second_order = Some(second_order);
+    }
+
+    /// An eigenvalue of the solver, refined; none that has gone farther than its error.
+    fn refine(&self, problem: &QuadraticProblem<'_>, at: usize) -> Option<Refined> {
+        let state = self.schur.right_vector(at);
+        let displacements = DVector::from_fn(state.len() / 2, |i, _| state[i]);
+        let solved = self.schur.eigenvalues()[at];
+        let refined = problem.refine(solved, &displacements)?;
+        let moved = (refined.eigenvalue - solved).norm();
+        let known = self.schur.accuracies(&[at])[0].whole.max(ACCURATE * solved.norm());
+        (moved <= known).then_some(refined)
+    }
+
+    fn set(&mut self, at: usize, lambda: Complex<f64>, accuracy: Accuracy, refined: Option<Refined>) {
+        self.eigenvalues[at] = lambda;
+        self.accuracies[at] = accuracy;
+        if lambda.im > 0.0 && at + 1 < self.eigenvalues.len() {
+            // The conjugate comes next.
+            self.eigenvalues[at + 1] = lambda.conj();
+            self.accuracies[at + 1] = accuracy;
+            self.refined[at + 1] = refined.as_ref().map(Refined::conjugate);
+        }
+        self.refined[at] = refined;
+    }
+
+    /// All eigenvalues. The first of a conjugate pair has the positive imaginary part.
+    pub fn eigenvalues(&self) -> &[Complex<f64>] {
+        &self.eigenvalues
+    }
+
+    /// Their accuracy.
+    pub fn accuracies(&self) -> &[Accuracy] {
+        &self.accuracies
+    }
+
+    /// The Schur form they come from.
+    pub fn schur(&self) -> &SchurForm {
+        &self.schur
+    }
+
+    /// The matrices of a second-order system.
+    pub(super) fn second_order(&self) -> Option<&SecondOrder> {
+        self.second_order.as_ref()
+    }
+
+    /// The eigenvalue at a position with its vectors, if it was refined.
+    pub(super) fn refined(&self, at: usize) -> Option<&Refined> {
+        self.refined[at].as_ref()
+    }
+
+    /// The same of all eigenvalues of a second-order system, refined or not, as far as that is possible.
+    pub(super) fn all_refined(&self) -> &[Option<Refined>] {
+        self.all_refined.get_or_init(|| {
+            let Some(second_order) = &self.second_order else { return vec![None; self.eigenvalues.len()] };
+            let problem = QuadraticProblem::new(second_order);
+            let mut found: Vec<Option<Refined>> = self.refined.clone();
+            for at in 0..found.len() {
+                if found[at].is_some() {
+                    continue;
+                }
+                if self.eigenvalues[at].im < 0.0 && at > 0 {
+                    found[at] = found[at - 1].as_ref().map(Refined::conjugate);
+                    continue;
+                }
+                let mut refined = self.refine(&problem, at);
+                // Known to the digits of the solver before, it keeps its number.
+                if let Some(refined) = &mut refined {
+                    refined.eigenvalue = self.eigenvalues[at];
+                }
+                found[at] = refined;
+            }
+            found
+        })
+    }
+}
+
+fn largest(eigenvalues: &[Complex<f64>]) -> f64 {
+    eigenvalues.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max)
+}
+
+/// Positions of all eigenvalues but so many with the smallest |λ|, in their order.
+pub(super) fn positions_without_smallest(all: &[Complex<f64>], count: usize) -> Vec<usize> {
+    let mut by_size: Vec<usize> = (0..all.len()).collect();
+    by_size.sort_by(|&a, &b| all[a].norm().total_cmp(&all[b].norm()).then(a.cmp(&b)));
+    let mut kept = by_size.split_off(count.min(all.len()));
+    kept.sort_unstable();
+    kept
+}
