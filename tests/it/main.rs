@@ -24,3 +24,4 @@ mod questions;
 mod readme;
 mod shipped;
 mod table2;
+mod wide;

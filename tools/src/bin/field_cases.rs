@@ -1,8 +1,9 @@
-//! Builds the studies of `tests/data/field` with their defaults and compares each surrogate with its model.
+//! Builds the studies of `tests/data/field`, or of another folder, with their defaults and compares each surrogate with
+//! its model.
 //!
-//! `cargo run --release -p pcc-tools --bin field_cases -- [NAME …] [--points N] [--seeds N]`: a row per study and seed
-//! with model runs, seconds of the build, share of misclassified points, stable, flutter and divergence shares of both,
-//! the true over the estimated error, and the groups.
+//! `cargo run --release -p pcc-tools --bin field_cases -- [NAME …] [--folder FOLDER] [--points N] [--seeds N]`: a row
+//! per study and seed with model runs, seconds of the build, share of misclassified points, stable, flutter and
+//! divergence shares of both, the true over the estimated error, and the groups.
 
 use pcc_compile::compilation::build;
 use pcc_compile::reference::ModelSample;
@@ -14,15 +15,16 @@ use std::time::Instant;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut names, mut points, mut seeds) = (Vec::new(), 100_000, 5);
+    let mut folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/field");
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
+            "--folder" => folder = arguments.next().unwrap_or_default().into(),
             "--points" => points = arguments.next().unwrap_or_default().parse()?,
             "--seeds" => seeds = arguments.next().unwrap_or_default().parse()?,
             name => names.push(name.to_owned()),
         }
     }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/field");
     if names.is_empty() {
         let studies = std::fs::read_dir(&folder)?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
         names = studies.filter_map(|name| name.strip_suffix(".toml").map(str::to_owned)).collect();
