@@ -63,7 +63,9 @@ impl CertifyReport {
         let study = surrogate.provenance.study_name.clone();
         let contradicts_surrogate = surrogate.certificates.last().is_some_and(|new| {
             let Certificate { samples, falsely_stable, falsely_unstable, level, .. } = *new;
-            let [lower, upper] = DiscordantCounts { samples, falsely_stable, falsely_unstable }.difference(level);
+            let counts =
+                DiscordantCounts { samples, falsely_claimed: falsely_stable, falsely_denied: falsely_unstable };
+            let [lower, upper] = counts.difference(level);
             lower > 0.0 || upper < 0.0
         });
         Self { study, file, contradicts_surrogate, certificates: CertificateReport::of(surrogate), elapsed_seconds }

@@ -15,6 +15,7 @@ mod full_expansions;
 mod golden_file;
 mod gradient_fits;
 mod invariants;
+mod judgement;
 mod kills;
 mod layers;
 mod matrices;

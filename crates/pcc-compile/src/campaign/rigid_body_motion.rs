@@ -7,7 +7,6 @@
 use super::run::Run;
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::{Spectrum, SpectrumError, free_motion};
-use crate::numerics::accuracy::Accuracy;
 use crate::numerics::zero_eigenvalues::zero_eigenvalues;
 use crate::study::Study;
 use nalgebra::Complex;
@@ -43,24 +42,25 @@ pub(super) struct Structure {
 }
 
 impl Structure {
-    /// The spectrum with these eigenvalues of a model. Of those that are negligible beside the largest as many are
-    /// rigid-body motion as the structure of the model makes zero: the others are slow.
-    pub fn spectrum(
+    /// How many of these eigenvalues of a model are rigid-body motion: of those that are negligible beside the largest
+    /// as many as the structure of the model makes zero, since the others are slow; or what the study says.
+    ///
+    /// # Errors
+    ///
+    /// [`SpectrumError::RigidBodyModes`] if they contradict the study.
+    pub fn rigid_body_modes(
         &self,
         eigenvalues: &[Complex<f64>],
-        accuracies: &[Accuracy],
         study: &Study,
         model: &dyn Model,
-    ) -> Result<Spectrum, SpectrumError> {
-        let spectrum = Spectrum::with_accuracies(eigenvalues, accuracies, study.spectrum.margin)?;
-        let negligible = spectrum.rigid_body_modes();
+    ) -> Result<usize, SpectrumError> {
+        let negligible = Spectrum::negligible(eigenvalues);
         // Most models have none, and need not be looked at.
         let zeros = || *self.zeros.get_or_init(|| zeros(study, model));
         let Some(stated) = study.spectrum.rigid_body_modes else {
-            let most = if negligible > 0 { zeros() } else { 0 };
-            return spectrum.with_rigid_body_modes(negligible.min(most));
+            return Ok(if negligible > 0 { negligible.min(zeros()) } else { 0 });
         };
-        if let Some(found) = spectrum.contradicts_rigid_body_modes(stated) {
+        if let Some(found) = Spectrum::contradiction(eigenvalues, stated) {
             return Err(SpectrumError::RigidBodyModes { stated, found });
         }
         match if negligible > stated { zeros() } else { 0 } {
@@ -68,7 +68,7 @@ impl Structure {
                 let found = format!("the structure of the model makes {more} eigenvalues zero");
                 Err(SpectrumError::RigidBodyModes { stated, found })
             }
-            _ => spectrum.with_rigid_body_modes(stated),
+            _ => Ok(stated),
         }
     }
 }

@@ -272,7 +272,8 @@ impl<'a> Runner<'a> {
     }
 
     fn spectrum(&self, eigenvalues: &[Complex<f64>], accuracies: &[Accuracy]) -> Result<Spectrum, SpectrumError> {
-        self.structure.spectrum(eigenvalues, accuracies, self.study, &*self.model)
+        let rigid_body_modes = self.structure.rigid_body_modes(eigenvalues, self.study, &*self.model)?;
+        Spectrum::with_zeros(eigenvalues, accuracies, rigid_body_modes, self.study.spectrum.margin)
     }
 
     /// The model at points that the ledger does not know.
@@ -386,8 +387,9 @@ impl<'a> Runner<'a> {
             }
         }
         let mut solution = Solution::new(state_matrix, second_order)?;
-        let spectrum = self.spectrum(solution.eigenvalues(), &[]).ok();
-        solution.look_closer(spectrum.as_ref().map_or(0, Spectrum::rigid_body_modes));
+        // What contradicts the study is told where the spectrum is asked for.
+        let rigid = self.structure.rigid_body_modes(solution.eigenvalues(), self.study, &*self.model).unwrap_or(0);
+        solution.look_closer(rigid);
         let (eigenvalues, accuracies) = (solution.eigenvalues().to_vec(), solution.accuracies().to_vec());
         let reduce = |spectrum: Spectrum| {
             let modes = self.study.spectrum.modes.of_interest(&spectrum);

@@ -58,7 +58,7 @@ pub fn certify_with_model<'a>(
         let marginal = verdicts.of_marginal().bound(proportion(summary.marginal()), level);
         let unstable = verdicts.of_unstable().bound(proportion(summary.unstable), level);
         MarginalBounds {
-            falsely_marginal: verdicts.of_marginal().falsely_stable,
+            falsely_marginal: verdicts.of_marginal().falsely_claimed,
             marginal: [marginal.lower, marginal.upper],
             unstable: [unstable.lower, unstable.upper],
         }
@@ -67,8 +67,8 @@ pub fn certify_with_model<'a>(
         seed,
         samples: runs,
         scheme: SCHEME.to_owned(),
-        falsely_stable: counts.falsely_stable,
-        falsely_unstable: counts.falsely_unstable,
+        falsely_stable: counts.falsely_claimed,
+        falsely_unstable: counts.falsely_denied,
         level,
         lower,
         upper,

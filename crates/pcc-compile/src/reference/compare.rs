@@ -112,8 +112,8 @@ impl Verdicts {
         let both = self.counts[class][class];
         DiscordantCounts {
             samples: self.counts.iter().flatten().sum(),
-            falsely_stable: self.surrogate(class) - both,
-            falsely_unstable: self.model(class) - both,
+            falsely_claimed: self.surrogate(class) - both,
+            falsely_denied: self.model(class) - both,
         }
     }
 
@@ -189,17 +189,17 @@ impl Comparison {
 
     /// Points that the surrogate calls stable and the model does not.
     pub fn falsely_stable(&self) -> u64 {
-        self.verdicts.of_stable().falsely_stable
+        self.verdicts.of_stable().falsely_claimed
     }
 
     /// Points that the surrogate calls marginal and the model does not.
     pub fn falsely_marginal(&self) -> u64 {
-        self.verdicts.of_marginal().falsely_stable
+        self.verdicts.of_marginal().falsely_claimed
     }
 
     /// Points that the surrogate calls unstable and the model does not.
     pub fn falsely_unstable(&self) -> u64 {
-        self.verdicts.of_unstable().falsely_stable
+        self.verdicts.of_unstable().falsely_claimed
     }
 
     /// Share of points on whose stability the two disagree, in percent.

@@ -138,50 +138,11 @@ pub struct MarginalBounds {
     pub unstable_upper: f64,
 }
 
-/// Certificates as JSON has them, in either version.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct EitherCertificates {
-    certificates: Vec<EitherCertificate>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct EitherCertificate {
-    seed: u64,
-    samples: u64,
-    scheme: String,
-    falsely_stable: u64,
-    falsely_unstable: u64,
-    level: f64,
-    lower: f64,
-    upper: f64,
-    problem_hash: String,
-    marginal: Option<MarginalBounds>,
-}
-
 impl<'de> Deserialize<'de> for AnyCertificates {
     /// Version 2 is told by a certificate that says something of marginal points.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let EitherCertificates { certificates } = EitherCertificates::deserialize(deserializer)?;
-        let latest = certificates.into_iter().map(|either| {
-            let EitherCertificate { seed, samples, scheme, level, lower, upper, problem_hash, marginal, .. } = either;
-            let EitherCertificate { falsely_stable, falsely_unstable, .. } = either;
-            let certificate = Certificate {
-                seed,
-                samples,
-                scheme,
-                falsely_stable,
-                falsely_unstable,
-                level,
-                lower,
-                upper,
-                problem_hash,
-                marginal,
-            };
-            certificate
-        });
-        Ok(Self::of(latest.collect()))
+        // What version 1 does not have may be missing in JSON.
+        Certificates::deserialize(deserializer).map(|latest| Self::of(latest.certificates))
     }
 }
 

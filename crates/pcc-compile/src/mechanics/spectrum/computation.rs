@@ -3,7 +3,7 @@
 use super::derivatives::ReducedSystem;
 use super::labels::Vectors;
 use super::modes::Spectrum;
-use super::solution::{Solution, positions_without_smallest};
+use super::solution::{Solution, sizes, without_smallest};
 use crate::mechanics::model::SecondOrder;
 use crate::numerics::accuracy::Accuracy;
 use nalgebra::{Complex, DMatrix};
@@ -63,7 +63,7 @@ impl Reductions {
         if systems.is_empty() || (!is_all && spectrum.eigenvalues().len() <= MOST_FOLLOWED) {
             // The numbers of the solver, where the spectrum has made real what is nearly so; in the order of the Schur
             // form, so that little of it has to change places.
-            let kept = positions_without_smallest(found, spectrum.rigid_body_modes());
+            let kept = without_smallest(&sizes(found), spectrum.rigid_body_modes());
             systems.extend(reduce(&kept.into_iter().map(|at| found[at]).collect::<Vec<_>>()));
         }
         Self { modes, systems }

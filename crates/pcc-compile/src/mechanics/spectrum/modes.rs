@@ -1,6 +1,6 @@
 //! From eigenvalues to numbered modes.
 
-use super::solution::positions_without_smallest;
+use super::solution::without_smallest;
 use crate::numerics::accuracy::Accuracy;
 use nalgebra::Complex;
 use pcc_evaluate::components::{Margin, Top, beyond_rounding};
@@ -98,13 +98,29 @@ impl Spectrum {
         accuracies: &[Accuracy],
         margin: Margin,
     ) -> Result<Self, SpectrumError> {
-        let largest = largest(eigenvalues);
-        let rigid = eigenvalues.iter().filter(|lambda| lambda.norm() <= RIGID * largest).count();
-        let accuracies = match accuracies.len() == eigenvalues.len() {
-            true => accuracies.to_vec(),
-            false => vec![Accuracy::least(largest); eigenvalues.len()],
-        };
-        Self::without_rigid_body(eigenvalues.to_vec(), accuracies, rigid, margin)
+        Self::with_zeros(eigenvalues, accuracies, Self::negligible(eigenvalues), margin)
+    }
+
+    /// The same with so many of the eigenvalues dropped as rigid-body motion, those with the smallest |λ|.
+    ///
+    /// # Errors
+    ///
+    /// As [`Spectrum::new`].
+    pub fn with_zeros(
+        eigenvalues: &[Complex<f64>],
+        accuracies: &[Accuracy],
+        rigid_body_modes: usize,
+        margin: Margin,
+    ) -> Result<Self, SpectrumError> {
+        let accuracies = if accuracies.len() == eigenvalues.len() { accuracies } else { &[] };
+        Self::without_rigid_body(eigenvalues.to_vec(), accuracies.to_vec(), rigid_body_modes, margin)
+    }
+
+    /// How many of these eigenvalues are negligible beside the largest.
+    pub fn negligible(eigenvalues: &[Complex<f64>]) -> usize {
+        let sizes: Vec<f64> = eigenvalues.iter().map(|lambda| lambda.norm()).collect();
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        sizes.into_iter().filter(|&size| size <= RIGID * largest).count()
     }
 
     /// The same eigenvalues with so many of them dropped as rigid-body motion, those with the smallest |λ|.
@@ -125,11 +141,13 @@ impl Spectrum {
         rigid_body_modes: usize,
         margin: Margin,
     ) -> Result<Self, SpectrumError> {
-        let largest = largest(&all);
-        let kept = positions_without_smallest(&all, rigid_body_modes);
-        let kept: Vec<Eigenvalue> = kept.iter().map(|&at| Eigenvalue::new(all[at], all_accuracies[at])).collect();
+        let sizes: Vec<f64> = all.iter().map(|lambda| lambda.norm()).collect();
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let least = Accuracy::least(largest);
+        let one = |at: usize| Eigenvalue::new(all[at], sizes[at], all_accuracies.get(at).copied().unwrap_or(least));
+        let kept: Vec<Eigenvalue> = without_smallest(&sizes, rigid_body_modes).into_iter().map(one).collect();
         let top = top(&kept, margin).ok_or(SpectrumError::OnlyRigid)?;
-        let mut oscillating: Vec<Eigenvalue> = kept.iter().filter(|one| one.lambda.im > 0.0).copied().collect();
+        let mut oscillating: Vec<&Eigenvalue> = kept.iter().filter(|one| one.lambda.im > 0.0).collect();
         oscillating.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
         for k in 1..oscillating.len() {
             let (before, after) = (oscillating[k - 1].lambda, oscillating[k].lambda);
@@ -137,15 +155,24 @@ impl Spectrum {
                 oscillating.swap(k - 1, k);
             }
         }
-        let reals = kept.iter().filter(|one| one.lambda.im == 0.0).copied();
+        let ranked = oscillating.iter().map(|one| one.lambda).collect();
         // A pair is one entry until all are sorted.
-        let mut halves: Vec<Eigenvalue> = oscillating.iter().copied().chain(reals).collect();
-        halves.sort_by(|a, b| a.lambda.norm().total_cmp(&b.lambda.norm()));
-        let sorted = || halves.iter().flat_map(|one| one.with_conjugate());
+        let mut halves = oscillating;
+        halves.extend(kept.iter().filter(|one| one.lambda.im == 0.0));
+        halves.sort_by(|a, b| a.size.total_cmp(&b.size));
+        let (mut eigenvalues, mut accuracies) = (Vec::with_capacity(kept.len()), Vec::with_capacity(kept.len()));
+        for one in halves {
+            eigenvalues.push(one.lambda);
+            accuracies.push(one.accuracy);
+            if one.lambda.im != 0.0 {
+                eigenvalues.push(one.lambda.conj());
+                accuracies.push(one.accuracy);
+            }
+        }
         Ok(Self {
-            eigenvalues: sorted().map(|one| one.lambda).collect(),
-            accuracies: sorted().map(|one| one.accuracy).collect(),
-            oscillating: oscillating.iter().map(|one| one.lambda).collect(),
+            eigenvalues,
+            accuracies,
+            oscillating: ranked,
             all,
             all_accuracies,
             rigid_body_modes,
@@ -175,15 +202,17 @@ impl Spectrum {
         Self::without_rigid_body(all, accuracies, 0, Margin::default())
     }
 
-    /// Why so many eigenvalues cannot all be rigid-body motion, those with the smallest |λ|; `None` if they can.
-    pub fn contradicts_rigid_body_modes(&self, count: usize) -> Option<String> {
-        let mut sizes: Vec<f64> = self.all.iter().map(|lambda| lambda.norm()).collect();
+    /// Why so many of these eigenvalues cannot all be rigid-body motion, those with the smallest |λ|; `None` if they
+    /// can.
+    pub fn contradiction(eigenvalues: &[Complex<f64>], rigid_body_modes: usize) -> Option<String> {
+        let mut sizes: Vec<f64> = eigenvalues.iter().map(|lambda| lambda.norm()).collect();
         sizes.sort_by(f64::total_cmp);
-        let Some(&next) = sizes.get(count) else {
+        let Some(&next) = sizes.get(rigid_body_modes) else {
             return Some(format!("there are only {} eigenvalues", sizes.len()));
         };
-        let largest_zero = count.checked_sub(1).map_or(0.0, |last| sizes[last]);
-        let is_zero = largest_zero <= RIGID * self.largest || largest_zero <= CLEARLY_SMALLER * next;
+        let largest = sizes.last().copied().unwrap_or(0.0);
+        let largest_zero = rigid_body_modes.checked_sub(1).map_or(0.0, |last| sizes[last]);
+        let is_zero = largest_zero <= RIGID * largest || largest_zero <= CLEARLY_SMALLER * next;
         (!is_zero).then(|| {
             format!("the eigenvalues with the smallest |λ| reach {largest_zero:.3e} 1/s and the next is {next:.3e} 1/s")
         })
@@ -284,19 +313,15 @@ pub(super) fn is_nearly_real(lambda: Complex<f64>) -> bool {
 #[derive(Debug, Clone, Copy)]
 struct Eigenvalue {
     lambda: Complex<f64>,
+    /// |λ|, as it was solved.
+    size: f64,
     accuracy: Accuracy,
 }
 
 impl Eigenvalue {
-    fn new(lambda: Complex<f64>, accuracy: Accuracy) -> Self {
-        let im = if is_nearly_real(lambda) { 0.0 } else { lambda.im };
-        let lambda = Complex::new(beyond_rounding(lambda.re, accuracy.re), im);
-        Self { lambda, accuracy }
-    }
-
-    fn with_conjugate(self) -> impl Iterator<Item = Self> {
-        let conjugate = Self { lambda: self.lambda.conj(), ..self };
-        std::iter::once(self).chain(Some(conjugate).filter(|_| self.lambda.im != 0.0))
+    fn new(lambda: Complex<f64>, size: f64, accuracy: Accuracy) -> Self {
+        let im = if lambda.im.abs() <= REAL * size { 0.0 } else { lambda.im };
+        Self { lambda: Complex::new(beyond_rounding(lambda.re, accuracy.re), im), size, accuracy }
     }
 }
 
@@ -307,10 +332,6 @@ fn top(eigenvalues: &[Eigenvalue], margin: Margin) -> Option<Top> {
     let decides = eigenvalues.iter().copied().reduce(larger)?;
     let max_re = eigenvalues.iter().map(|one| one.lambda.re).fold(f64::NEG_INFINITY, f64::max);
     Some(Top { max_re, excess: excess(&decides), frequency: decides.lambda.im })
-}
-
-fn largest(eigenvalues: &[Complex<f64>]) -> f64 {
-    eigenvalues.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

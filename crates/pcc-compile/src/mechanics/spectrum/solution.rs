@@ -45,7 +45,7 @@ impl Solution {
     pub fn new(state_matrix: DMatrix<f64>, second_order: Option<SecondOrder>) -> Result<Self, EigenvalueError> {
         let schur = SchurForm::new(state_matrix)?;
         let eigenvalues = schur.eigenvalues();
-        let least = Accuracy::least(largest(&eigenvalues));
+        let least = Accuracy::least(sizes(&eigenvalues).into_iter().fold(0.0, f64::max));
         let count = eigenvalues.len();
         let (accuracies, refined) = (vec![least; count], vec![None; count]);
         Ok(Self { schur, second_order, eigenvalues, accuracies, refined, all_refined: OnceLock::new() })
@@ -54,12 +54,16 @@ impl Solution {
     /// Looks at the accuracy of all eigenvalues but `rigid_body_modes`, those with the smallest |λ|, and refines what
     /// needs it.
     pub fn look_closer(&mut self, rigid_body_modes: usize) {
-        let kept = positions_without_smallest(&self.eigenvalues, rigid_body_modes);
-        let largest = largest(&self.eigenvalues);
+        let sizes = sizes(&self.eigenvalues);
+        let kept = without_smallest(&sizes, rigid_body_modes);
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
         let is_suspect = |at: usize| {
-            let lambda = self.eigenvalues[at];
-            let mirrors = |other: &usize| (lambda + self.eigenvalues[*other].conj()).norm() <= NEAR_AXIS * largest;
-            lambda.im >= 0.0 && (lambda.norm() <= SLOW * largest || kept.iter().any(mirrors))
+            let (lambda, near) = (self.eigenvalues[at], NEAR_AXIS * largest);
+            let mirrors = |other: &usize| {
+                let other = self.eigenvalues[*other];
+                (lambda.re + other.re).abs() <= near && (lambda.im - other.im).abs() <= near
+            };
+            lambda.im >= 0.0 && (sizes[at] <= SLOW * largest || kept.iter().any(mirrors))
         };
         let suspects: Vec<usize> = kept.iter().copied().filter(|&at| is_suspect(at)).collect();
         for (&at, accuracy) in suspects.iter().zip(self.schur.accuracies(&suspects)) {
@@ -163,15 +167,18 @@ impl Solution {
     }
 }
 
-fn largest(eigenvalues: &[Complex<f64>]) -> f64 {
-    eigenvalues.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max)
-}
-
-/// Positions of all eigenvalues but so many with the smallest |λ|, in their order.
-pub(super) fn positions_without_smallest(all: &[Complex<f64>], count: usize) -> Vec<usize> {
-    let mut by_size: Vec<usize> = (0..all.len()).collect();
-    by_size.sort_by(|&a, &b| all[a].norm().total_cmp(&all[b].norm()).then(a.cmp(&b)));
-    let mut kept = by_size.split_off(count.min(all.len()));
+/// Positions of all eigenvalues with these |λ| but so many of the smallest, in their order.
+pub(super) fn without_smallest(sizes: &[f64], count: usize) -> Vec<usize> {
+    if count == 0 {
+        return (0..sizes.len()).collect();
+    }
+    let mut by_size: Vec<usize> = (0..sizes.len()).collect();
+    by_size.sort_by(|&a, &b| sizes[a].total_cmp(&sizes[b]).then(a.cmp(&b)));
+    let mut kept = by_size.split_off(count.min(sizes.len()));
     kept.sort_unstable();
     kept
+}
+
+pub(super) fn sizes(eigenvalues: &[Complex<f64>]) -> Vec<f64> {
+    eigenvalues.iter().map(|lambda| lambda.norm()).collect()
 }

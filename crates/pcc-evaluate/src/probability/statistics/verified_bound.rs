@@ -1,16 +1,15 @@
-//! Bounds on the model's stability proportion from a surrogate that may be wrong.
+//! Bounds on a share of the model, of stable points say, from a surrogate that may be wrong.
 //!
-//! A surrogate is sampled a million times for the price of a few model runs, so its own proportion p_s of stable
-//! samples is known almost exactly, but it is the surrogate's. The model's proportion differs from it by the points
-//! where the two disagree:
+//! A surrogate is sampled a million times for the price of a few model runs, so its own share p_s of samples is known
+//! almost exactly, but it is the surrogate's. The model's share differs from it by the points where the two disagree:
 //!
-//! p = p_s − P(falsely stable) + P(falsely unstable),
+//! p = p_s − P(falsely claimed) + P(falsely denied),
 //!
-//! where a point is falsely stable if the surrogate calls it stable and the model unstable, and falsely unstable the
-//! other way round. Both probabilities are estimated from fresh points at which surrogate and model are evaluated
-//! together. Where the surrogate is good they are small, and so is their uncertainty: it decreases as √(P/M) with M
-//! fresh points while disagreements are seen, and as 1/M while there are none, against √(p(1 − p)/M) for M model runs
-//! that are merely counted. A bad surrogate widens the bound; it does not make it wrong.
+//! where a point is falsely claimed if the surrogate counts it, as stable say, and the model does not, and falsely
+//! denied the other way round. Both probabilities are estimated from fresh points at which surrogate and model are
+//! evaluated together. Where the surrogate is good they are small, and so is their uncertainty: it decreases as √(P/M)
+//! with M fresh points while disagreements are seen, and as 1/M while there are none, against √(p(1 − p)/M) for M model
+//! runs that are merely counted. A bad surrogate widens the bound; it does not make it wrong.
 //!
 //! Three intervals of Clopper and Pearson (1934), <https://doi.org/10.1093/biomet/26.4.404>, are combined by
 //! Bonferroni's inequality.
@@ -36,7 +35,7 @@ const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 /// ```
 /// use pcc_evaluate::probability::statistics::{DiscordantCounts, Proportion};
 /// let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-/// let counts = DiscordantCounts { samples: 300, falsely_stable: 2, falsely_unstable: 0 };
+/// let counts = DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 0 };
 /// let bound = counts.bound(surrogate, 0.95);
 /// assert!(bound.lower > 0.36 && bound.upper < 0.42);
 /// ```
@@ -44,10 +43,10 @@ const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 pub struct DiscordantCounts {
     /// Number of fresh points, at least one.
     pub samples: u64,
-    /// Number of points that the surrogate calls stable and the model unstable.
-    pub falsely_stable: u64,
-    /// Number of points that the surrogate calls unstable and the model stable.
-    pub falsely_unstable: u64,
+    /// Number of points that the surrogate counts and the model does not.
+    pub falsely_claimed: u64,
+    /// Number of points that the model counts and the surrogate does not.
+    pub falsely_denied: u64,
 }
 
 impl DiscordantCounts {
@@ -59,25 +58,25 @@ impl DiscordantCounts {
     /// # Formula
     ///
     /// With α = 1 − `level` and Clopper–Pearson intervals \[s⁻, s⁺\] of p_s at error 0.02 α, \[a⁻, a⁺\] of P(falsely
-    /// stable) and \[b⁻, b⁺\] of P(falsely unstable) at error 0.49 α each,
+    /// stable) and \[b⁻, b⁺\] of P(falsely denied) at error 0.49 α each,
     ///
     /// max(0, s⁻ − a⁺ + b⁻) ≤ p ≤ min(1, s⁺ − a⁻ + b⁺).
     ///
     /// Each interval misses its probability with at most its error, so by Bonferroni's inequality one or more of them
     /// miss with at most 0.02 α + 2 · 0.49 α = α, however they depend on each other: both discordant counts come from
-    /// the same points. When none misses, p = p_s − P(falsely stable) + P(falsely unstable) lies between the two sides.
+    /// the same points. When none misses, p = p_s − P(falsely claimed) + P(falsely denied) lies between the two sides.
     ///
     /// Without fresh points the bound is \[0, 1\].
     pub fn bound(self, surrogate: Proportion, level: f64) -> Interval {
         let alpha = 1.0 - level;
         let discordant =
             |hits| Proportion { hits, samples: self.samples }.clopper_pearson(1.0 - ERROR_SHARE_OF_DISCORDANCE * alpha);
-        let falsely_stable = discordant(self.falsely_stable);
-        let falsely_unstable = discordant(self.falsely_unstable);
+        let falsely_claimed = discordant(self.falsely_claimed);
+        let falsely_denied = discordant(self.falsely_denied);
         let stable = surrogate.clopper_pearson(1.0 - ERROR_SHARE_OF_SURROGATE * alpha);
         Interval {
-            lower: (stable.lower - falsely_stable.upper + falsely_unstable.lower).clamp(0.0, 1.0),
-            upper: (stable.upper - falsely_stable.lower + falsely_unstable.upper).clamp(0.0, 1.0),
+            lower: (stable.lower - falsely_claimed.upper + falsely_denied.lower).clamp(0.0, 1.0),
+            upper: (stable.upper - falsely_claimed.lower + falsely_denied.upper).clamp(0.0, 1.0),
             level,
         }
     }
@@ -116,13 +115,13 @@ mod tests {
         let mut evaluation = Stream::new(7, Purpose::Evaluation, repeat);
         let hits = (0..surrogate_samples).filter(|_| evaluation.next_unit() < truth.surrogate()).count() as u64;
         let mut certification = Stream::new(7, Purpose::Certification, repeat);
-        let mut seen = DiscordantCounts { samples: fresh, falsely_stable: 0, falsely_unstable: 0 };
+        let mut seen = DiscordantCounts { samples: fresh, falsely_claimed: 0, falsely_denied: 0 };
         for _ in 0..fresh {
             let unit = certification.next_unit();
-            if unit < truth.falsely_stable {
-                seen.falsely_stable += 1;
-            } else if unit < truth.falsely_stable + truth.falsely_unstable {
-                seen.falsely_unstable += 1;
+            if unit < truth.falsely_claimed {
+                seen.falsely_claimed += 1;
+            } else if unit < truth.falsely_claimed + truth.falsely_denied {
+                seen.falsely_denied += 1;
             }
         }
         let bound = seen.bound(Proportion { hits, samples: surrogate_samples }, LEVEL);
@@ -132,21 +131,21 @@ mod tests {
     #[derive(Clone, Copy)]
     struct Truth {
         model: f64,
-        falsely_stable: f64,
-        falsely_unstable: f64,
+        falsely_claimed: f64,
+        falsely_denied: f64,
     }
 
     impl Truth {
         fn surrogate(self) -> f64 {
-            self.model + self.falsely_stable - self.falsely_unstable
+            self.model + self.falsely_claimed - self.falsely_denied
         }
     }
 
     #[test]
     fn bound_covers_at_least_at_its_level() {
         let repeats = 2000;
-        let good = Truth { model: 0.4, falsely_stable: 0.02, falsely_unstable: 0.005 };
-        let biased = Truth { model: 0.4, falsely_stable: 0.2, falsely_unstable: 0.0 };
+        let good = Truth { model: 0.4, falsely_claimed: 0.02, falsely_denied: 0.005 };
+        let biased = Truth { model: 0.4, falsely_claimed: 0.2, falsely_denied: 0.0 };
         for (truth, fresh) in [(good, 50), (good, 300), (good, 1000), (biased, 50)] {
             let held = (0..repeats).filter(|&repeat| bound_holds(repeat, fresh, 2000, truth)).count();
             assert!(held as f64 >= LEVEL * repeats as f64, "{held} of {repeats} with {fresh} fresh points");
@@ -156,7 +155,7 @@ mod tests {
     #[test]
     fn no_disagreement_leaves_the_width_of_what_may_have_been_missed() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 100, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 100, falsely_claimed: 0, falsely_denied: 0 }.bound(surrogate, LEVEL);
         // One-sided 0.245 α of 100 points without a hit: 1 − (0.245 · 0.05)^(1/100).
         let missed = 1.0 - (0.245f64 * 0.05).powf(0.01);
         let own = surrogate.clopper_pearson(0.999);
@@ -168,17 +167,17 @@ mod tests {
     fn disagreement_shifts_the_bound_to_the_side_of_the_model() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
         let optimistic =
-            DiscordantCounts { samples: 500, falsely_stable: 60, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+            DiscordantCounts { samples: 500, falsely_claimed: 60, falsely_denied: 0 }.bound(surrogate, LEVEL);
         assert!(optimistic.lower < 0.28 && 0.28 < optimistic.upper && optimistic.upper < 0.4, "{optimistic:?}");
         let pessimistic =
-            DiscordantCounts { samples: 500, falsely_stable: 0, falsely_unstable: 60 }.bound(surrogate, LEVEL);
+            DiscordantCounts { samples: 500, falsely_claimed: 0, falsely_denied: 60 }.bound(surrogate, LEVEL);
         assert!(pessimistic.upper > 0.52 && 0.52 > pessimistic.lower && pessimistic.lower > 0.4, "{pessimistic:?}");
     }
 
     #[test]
     fn a_perfect_surrogate_says_more_than_the_model_runs_alone() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 300, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 300, falsely_claimed: 0, falsely_denied: 0 }.bound(surrogate, LEVEL);
         let alone = Proportion { hits: 120, samples: 300 }.clopper_pearson(LEVEL);
         assert!(width(bound) < 0.4 * width(alone), "{bound:?}, {alone:?}");
     }
@@ -187,8 +186,7 @@ mod tests {
     fn bound_stays_within_zero_and_one() {
         for hits in [0, 1_000_000] {
             let surrogate = Proportion { hits, samples: 1_000_000 };
-            let bound =
-                DiscordantCounts { samples: 50, falsely_stable: 5, falsely_unstable: 5 }.bound(surrogate, LEVEL);
+            let bound = DiscordantCounts { samples: 50, falsely_claimed: 5, falsely_denied: 5 }.bound(surrogate, LEVEL);
             assert!(0.0 <= bound.lower && bound.lower <= bound.upper && bound.upper <= 1.0, "{bound:?}");
         }
     }
@@ -196,7 +194,7 @@ mod tests {
     #[test]
     fn nothing_is_known_without_fresh_points() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 0, falsely_stable: 0, falsely_unstable: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 0, falsely_claimed: 0, falsely_denied: 0 }.bound(surrogate, LEVEL);
         assert_eq!((bound.lower, bound.upper), (0.0, 1.0));
     }
 }
