@@ -106,8 +106,7 @@ pub(super) fn sweep(text: &str) -> Result<Sweep, String> {
 
 /// `QUANTITY<VALUE`, `QUANTITY>VALUE`, `flutter` or `divergence`.
 pub(super) fn event(text: &str) -> Result<Event, String> {
-    const FORM: &str =
-        "write QUANTITY<VALUE or QUANTITY>VALUE in quotes, like 'max_re<-1', or the word flutter or divergence";
+    const FORM: &str = "write QUANTITY<VALUE or QUANTITY>VALUE in quotes, like 'max_re<-1', or a word: flutter, divergence or marginal";
     if let Some(event) = Event::of_kind(text.trim()) {
         return Ok(event);
     }

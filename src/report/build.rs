@@ -206,10 +206,13 @@ impl FitReport {
             let error = surrogate.decision.proportion_error.map_or(String::new(), |error| {
                 format!(", and the proportion may be off by {} % of itself", significant(100.0 * error, 2))
             });
+            let advice = match surrogate.verdict.band {
+                Some(_) => "widen spectrum.frequencies",
+                None => "target = \"invariants\" without spectrum.modes holds all eigenvalues",
+            };
             warnings.push(format!(
                 "in {unlisted} of {} model runs an eigenvalue that the surrogate does not hold decides whether the \
-                 system is stable{error}; \
-                 target = \"invariants\" without spectrum.modes holds all eigenvalues",
+                 system is stable{error}; {advice}",
                 counts.final_mesh
             ));
         }
@@ -372,10 +375,10 @@ impl fmt::Display for BuildReport {
             self.seed
         )?;
         if self.undamped {
-            writeln!(f, "The system is undamped: nothing decays.\n")?;
+            writeln!(f, "The system is undamped: eigenvalues come as λ and −λ.\n")?;
         }
         if self.rigid_body_modes > 0 {
-            writeln!(f, "{} eigenvalues are rigid-body motion: zero, and left out.\n", self.rigid_body_modes)?;
+            writeln!(f, "Rigid-body motion: {} of the eigenvalues, zero and left out.\n", self.rigid_body_modes)?;
         }
         writeln!(f, "{}", FitReport::table(&self.components))?;
         self.warnings.iter().try_for_each(|warning| writeln!(f, "warning: {warning}"))?;

@@ -170,7 +170,7 @@ impl fmt::Display for CompareReport {
             writeln!(f, "  unstable               {}", shares(self.unstable_model, self.unstable_surrogate))?;
         }
         if self.rigid_body_modes > 0 {
-            writeln!(f, "  rigid body             {} eigenvalues are zero, and left out", self.rigid_body_modes)?;
+            writeln!(f, "  rigid body             {} of the eigenvalues, zero and left out", self.rigid_body_modes)?;
         }
         writeln!(
             f,

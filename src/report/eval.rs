@@ -36,7 +36,7 @@ pub struct EvalReport {
     pub replicates: u32,
     /// Inputs that are confined or fixed.
     pub conditions: Vec<Condition>,
-    /// Number of stable samples, max Re λ < 0.
+    /// Number of stable samples: the largest Re λ, with the margin, is negative.
     pub stable_samples: u64,
     /// Their share.
     pub stable_proportion: f64,
@@ -167,7 +167,7 @@ pub struct RealReport {
     pub name: String,
     /// λ, in 1/s.
     pub growth_rate: Statistics,
-    /// Share of samples in which it is unstable, λ ≥ 0.
+    /// Share of samples in which it is unstable.
     pub divergence_share: f64,
 }
 

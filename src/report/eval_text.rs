@@ -46,7 +46,7 @@ impl EvalReport {
         };
         if self.undamped {
             return format!(
-                "Undamped: nothing decays.{marginal} Flutter in {}, divergence in {}.",
+                "Undamped.{marginal} Flutter in {}, divergence in {}.",
                 percent(self.flutter_proportion),
                 percent(self.divergence_proportion)
             );
@@ -90,7 +90,7 @@ impl fmt::Display for EvalReport {
             }
         }
         if let Some(count) = self.rigid_body_modes.filter(|&count| count > 0) {
-            writeln!(f, "  rigid body             {count} eigenvalues are zero, and left out")?;
+            writeln!(f, "  rigid body             {count} of the eigenvalues, zero and left out")?;
         }
         if let Some(band) = &self.band {
             writeln!(f, "  frequencies            {band}")?;

@@ -258,7 +258,7 @@ impl InspectReport {
             facts.insert(6, ("frequencies", band.clone()));
         }
         if self.undamped {
-            facts.insert(6, ("damping", "none: nothing decays".to_owned()));
+            facts.insert(6, ("damping", "none: eigenvalues come as λ and −λ".to_owned()));
         }
         if self.rigid_body_modes > 0 {
             let motion = format!("{} eigenvalues, negligible everywhere and left out", self.rigid_body_modes);

@@ -26,7 +26,7 @@ pub struct InputSensitivity {
     pub input: String,
     /// Indices of max Re λ; null if it does not vary.
     pub max_re: Option<IndexPair>,
-    /// Indices of the indicator max Re λ < 0; null if it does not vary.
+    /// Indices of the indicator of samples that are not unstable; null if it does not vary.
     pub stability: Option<IndexPair>,
 }
 
@@ -228,7 +228,7 @@ impl CriticalReport {
 impl fmt::Display for CriticalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = |value: Option<f64>| value.map_or("never".to_owned(), |value| significant(value, 4));
-        writeln!(f, "\ncritical {}: the smallest value at which the system is no longer stable", self.input)?;
+        writeln!(f, "\ncritical {}: the smallest value at which the system is unstable", self.input)?;
         writeln!(f, "  stable throughout      {:.3} %", 100.0 * self.never)?;
         writeln!(f, "  unstable from start    {:.3} %", 100.0 * self.unstable_from_start)?;
         let (mean, minimum, maximum) = (value(self.mean), value(self.minimum), value(self.maximum));

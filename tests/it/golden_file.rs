@@ -207,6 +207,7 @@ fn verdict(b: &mut B) -> Value {
         ("tolerance", &B::float),
         ("margin", &margin),
         ("band", &|b| b.option(band)),
+        ("is_self_adjoint", &|b| json!(b.take::<1>() == [1])),
     ])
 }
 

@@ -198,7 +198,7 @@ fn undamped_systems_are_called_so_by_every_face() {
     assert!(eval.contains("  marginal  ") && !eval.contains("warning"), "{eval}");
     let build = output(path, &["build", "study.toml", "-o", "again.pcc"]);
     assert!(build.contains("undamped") && !build.contains("warning"), "{build}");
-    assert!(output(path, &["inspect", "built.pcc"]).contains("nothing decays"));
+    assert!(output(path, &["inspect", "built.pcc"]).contains("come as λ and −λ"));
     let reference = output(path, &["reference", "study.toml", "-n", "500"]);
     assert!(reference.lines().next().unwrap().contains("of an undamped system"), "{reference}");
     let compare = output(path, &["compare", "built.pcc", "--study", "study.toml", "-n", "500"]);

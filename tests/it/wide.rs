@@ -90,10 +90,11 @@ fn machines_on_soft_mounts_are_stable_where_the_closed_form_says() {
 /// Flutter, divergence and marginal shares in percent, and runs at most. The shares of chains and penalty springs are
 /// those of their structure, of undamped2 by (200 + k)² > 4 (120 (80 + k) + μk²), of undiv by k < 1/3; the others by
 /// `shares.py`, and by the model alone.
-const UNDAMPED: [(&str, Option<[f64; 3]>, u64); 12] = [
+const UNDAMPED: [(&str, Option<[f64; 3]>, u64); 13] = [
     ("chain-2", Some([0.0, 0.0, 100.0]), 30),
     ("chain-5", Some([0.0, 0.0, 100.0]), 30),
     ("chain-16", Some([0.0, 0.0, 100.0]), 30),
+    ("blades3", Some([0.0, 0.0, 100.0]), 30),
     ("pen", Some([0.0, 0.0, 100.0]), 30),
     ("undamped2", Some([71.03, 0.0, 28.97]), 30),
     ("undiv", Some([0.0, 29.1667, 70.8333]), 30),

@@ -5,7 +5,7 @@
 //! eigenvalues are taken at their word: what is negligible at every point is zero.
 
 use super::run::Run;
-use crate::mechanics::model::Model;
+use crate::mechanics::model::{Linearization, Model};
 use crate::mechanics::spectrum::{Spectrum, SpectrumError, free_motion};
 use crate::numerics::zero_eigenvalues::zero_eigenvalues;
 use crate::study::Study;
@@ -39,9 +39,19 @@ const FIRST_STRUCTURE_POINT: u64 = 1 << 41;
 pub(super) struct Structure {
     /// Number of eigenvalues that it makes zero.
     zeros: OnceLock<usize>,
+    /// Whether it is undamped with symmetric matrices.
+    is_self_adjoint: OnceLock<bool>,
 }
 
 impl Structure {
+    /// Whether the model is undamped with symmetric matrices, so that λ² is real.
+    pub fn is_self_adjoint(&self, study: &Study, model: &dyn Model) -> bool {
+        let at_point = |system: Option<Linearization>| {
+            system.and_then(|system| system.second_order).is_some_and(|system| system.is_self_adjoint())
+        };
+        *self.is_self_adjoint.get_or_init(|| (0..STRUCTURE_POINTS).all(|index| at_point(system(study, model, index))))
+    }
+
     /// How many of these eigenvalues of a model are rigid-body motion: of those that are negligible beside the largest
     /// as many as the structure of the model makes zero, since the others are slow; or what the study says.
     ///
@@ -76,15 +86,20 @@ impl Structure {
 /// The least number of eigenvalues that are zero by structure at some random points; no limit, if it is not known.
 fn zeros(study: &Study, model: &dyn Model) -> usize {
     let at_point = |index: u64| {
-        let inputs = &study.inputs;
-        let mut point = vec![0.0; inputs.dimension()];
-        random_point(inputs, study.seed, Purpose::Design, FIRST_STRUCTURE_POINT + index, &mut point);
-        let linearization = model.system(&inputs.physical(&point)).ok().flatten()?;
-        let most = zero_eigenvalues(linearization.state_matrix);
-        match linearization.second_order.filter(|_| most > 0) {
+        let Linearization { state_matrix, second_order, .. } = system(study, model, index)?;
+        let most = zero_eigenvalues(state_matrix);
+        match second_order.filter(|_| most > 0) {
             Some(system) => Some(free_motion(&system, most).unwrap_or(most)),
             None => Some(most),
         }
     };
     (0..STRUCTURE_POINTS).filter_map(at_point).min().unwrap_or(usize::MAX)
+}
+
+/// The model at the point of this number, if it has matrices.
+fn system(study: &Study, model: &dyn Model, index: u64) -> Option<Linearization> {
+    let inputs = &study.inputs;
+    let mut point = vec![0.0; inputs.dimension()];
+    random_point(inputs, study.seed, Purpose::Design, FIRST_STRUCTURE_POINT + index, &mut point);
+    model.system(&inputs.physical(&point)).ok().flatten()
 }

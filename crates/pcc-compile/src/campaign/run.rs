@@ -155,6 +155,11 @@ impl<'a> Runner<'a> {
         Self { ranks_modes: false, ..self }
     }
 
+    /// Whether the model is undamped with symmetric matrices, so that λ² is real.
+    pub fn is_self_adjoint(&self) -> bool {
+        self.structure.is_self_adjoint(self.study, &*self.model)
+    }
+
     /// Whether runs come with derivatives.
     pub fn has_derivatives(&self) -> bool {
         self.with_derivatives

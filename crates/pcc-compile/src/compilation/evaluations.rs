@@ -163,6 +163,11 @@ impl<'a> Evaluations<'a> {
         Ok((labels, groups))
     }
 
+    /// Whether the model is undamped with symmetric matrices, so that λ² is real.
+    pub fn is_self_adjoint(&self) -> bool {
+        self.runs.iter().all(|run| run.spectrum.is_undamped()) && self.runner.is_self_adjoint()
+    }
+
     /// Whether runs come with derivatives.
     pub fn has_derivatives(&self) -> bool {
         self.runner.has_derivatives()

@@ -15,6 +15,7 @@ use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::{Output, OutputKind};
 use pcc_evaluate::foundation::{Interrupted, Observer};
+use pcc_evaluate::surrogate::VerdictBasis;
 use std::collections::HashMap;
 
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
@@ -27,6 +28,8 @@ pub(super) struct Followed<'d> {
     pub labels: Labels,
     pub groups: Groups,
     pub has_derivatives: bool,
+    /// What of the verdict says what eigenvalues can be.
+    pub verdict: VerdictBasis,
 }
 
 impl Followed<'_> {
@@ -184,7 +187,7 @@ impl<'a> GroupFits<'a> {
         }
         GroupFit {
             gradients,
-            resolutions: resolutions(&output, followed.runs),
+            resolutions: finer(resolutions(&output, followed.runs), group, &eigenvalues, followed),
             output,
             eigenvalues,
             values,
@@ -202,6 +205,24 @@ impl<'a> GroupFits<'a> {
         let found: Vec<(usize, Vec<Vec<f64>>)> = followed.runs.iter().enumerate().filter_map(slopes).collect();
         gradients(&found, output.components.len(), followed.samples, self.study)
     }
+}
+
+/// Finer resolutions of the components of a group, where the accuracy of all its eigenvalues is known at every run:
+/// slow modes that were refined are known far better than the largest eigenvalue says.
+fn finer(resolutions: Vec<f64>, group: &Group, eigenvalues: &[Vec<Complex<f64>>], followed: &Followed<'_>) -> Vec<f64> {
+    let is_known = |run: usize| {
+        let spectrum = &followed.runs[run].spectrum;
+        group.labels().iter().all(|&label| spectrum.is_accuracy_known(followed.labels.position(run, label)))
+    };
+    if !(0..followed.runs.len()).all(is_known) {
+        return resolutions;
+    }
+    let mut largest = vec![0.0f64; resolutions.len()];
+    for (run, lambdas) in eigenvalues.iter().enumerate() {
+        let errors = component_errors(group.kind(), lambdas, &followed.accuracies(group, run));
+        largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = largest.max(error));
+    }
+    resolutions.into_iter().zip(largest).map(|(rule, known)| rule.min(known)).collect()
 }
 
 /// The components of a group that cannot be told from zero at any run: they are zero.
@@ -274,6 +295,8 @@ fn score(fit: &GroupFit, group: &Group, followed: &Followed<'_>) -> f64 {
             return f64::INFINITY;
         };
         let lambdas: Vec<Complex<f64>> = labels.iter().map(|&label| followed.eigenvalue(run, label)).collect();
+        let predicted: Vec<Complex<f64>> =
+            predicted.into_iter().map(|lambda| followed.verdict.settled(lambda)).collect();
         for (k, j) in nearest(&lambdas, &predicted).into_iter().enumerate() {
             let error = predicted[j].re - lambdas[k].re;
             squares[k] += if error.is_finite() { error * error } else { f64::INFINITY };

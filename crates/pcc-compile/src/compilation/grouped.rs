@@ -16,7 +16,7 @@ use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
-use pcc_evaluate::surrogate::Band;
+use pcc_evaluate::surrogate::{Band, VerdictBasis};
 use std::f64::consts::TAU;
 
 /// Fits groups of eigenvalues, whatever their number of oscillating modes.
@@ -69,7 +69,8 @@ impl<'a> GroupedEigenvalues<'a> {
         }
         let samples = evaluations.samples();
         let (runs, has_derivatives) = (evaluations.runs(), evaluations.has_derivatives());
-        let followed = Followed { samples: &samples, runs, labels, groups, has_derivatives };
+        let verdict = VerdictBasis { is_self_adjoint: evaluations.is_self_adjoint(), ..VerdictBasis::default() };
+        let followed = Followed { samples: &samples, runs, labels, groups, has_derivatives, verdict };
         self.fits.begin(&followed);
 
         let ranked = labels_by_rank(&followed, &self.study.spectrum.modes);

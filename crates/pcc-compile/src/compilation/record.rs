@@ -72,6 +72,7 @@ pub(super) fn surrogate(
     let mut surrogate = new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training);
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());
+    surrogate.verdict.is_self_adjoint = evaluations.is_self_adjoint();
     surrogate
 }
 

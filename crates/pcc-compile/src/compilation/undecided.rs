@@ -8,8 +8,8 @@
 use crate::campaign::Run;
 use crate::mechanics::spectrum::nearest;
 use nalgebra::Complex;
-use pcc_evaluate::components::{Margin, Output};
-use pcc_evaluate::surrogate::Surrogate;
+use pcc_evaluate::components::Output;
+use pcc_evaluate::surrogate::{Surrogate, VerdictBasis};
 
 /// What happens less often is no chance.
 const RARE: f64 = 1e-3;
@@ -23,7 +23,7 @@ pub(super) fn undecided(surrogate: &Surrogate, values: &[Vec<f64>], residuals: &
         surrogate
             .outputs
             .iter()
-            .any(|output| is_unknown(output, &exact, &predicted, surrogate.verdict.margin, run.spectrum.top().excess))
+            .any(|output| is_unknown(output, &exact, &predicted, &surrogate.verdict, run.spectrum.top().excess))
     };
     runs.iter().enumerate().filter(is_undecided).count()
 }
@@ -41,16 +41,16 @@ pub(super) fn is_chance(count: usize, expected: f64) -> bool {
 }
 
 /// Whether an eigenvalue of an output may be the largest and is predicted worse than its distance from zero.
-fn is_unknown(output: &Output, exact: &[f64], predicted: &[f64], margin: Margin, largest: f64) -> bool {
+fn is_unknown(output: &Output, exact: &[f64], predicted: &[f64], verdict: &VerdictBasis, largest: f64) -> bool {
     let eigenvalues = |components: &[f64]| {
         let mut found: Vec<Complex<f64>> = Vec::with_capacity(output.eigenvalue_count());
         output.recombine(components, &mut found);
-        found
+        found.into_iter().map(|lambda| verdict.settled(lambda)).collect::<Vec<_>>()
     };
     let (exact, predicted) = (eigenvalues(exact), eigenvalues(predicted));
     exact.iter().zip(nearest(&exact, &predicted)).any(|(lambda, j)| {
-        let excess = margin.excess(*lambda);
-        let error = (margin.excess(predicted[j]) - excess).abs();
+        let excess = verdict.margin.excess(*lambda);
+        let error = (verdict.margin.excess(predicted[j]) - excess).abs();
         let is_known = error <= excess.abs() || excess + error < largest;
         // An error that is no number is not known.
         !is_known
@@ -68,7 +68,7 @@ mod tests {
         let lambda = Complex::new(-1.0, 10.0);
         let numbers = Numbers { modes: vec![1], reals: Vec::new() };
         let outputs = with_ids(vec![output(OutputKind::Eigenvalue, &numbers, &[vec![lambda]])]);
-        is_unknown(&outputs[0], &[lambda.re, lambda.im], &[predicted, lambda.im], Margin::default(), max_re)
+        is_unknown(&outputs[0], &[lambda.re, lambda.im], &[predicted, lambda.im], &VerdictBasis::default(), max_re)
     }
 
     #[test]

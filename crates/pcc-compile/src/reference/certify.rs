@@ -1,6 +1,6 @@
 //! A verified bound on the stability proportion: fresh model runs against the surrogate.
 
-use super::compare::{Judged, Verdicts};
+use super::compare::Verdicts;
 use super::direct_computations::{ReferenceError, for_each_chunk, surrogate_block};
 use crate::campaign::Campaign;
 use pcc_evaluate::evaluation::{EvalError, Plan, monte_carlo};
@@ -43,7 +43,7 @@ pub fn certify_with_model<'a>(
     let mut verdicts = Verdicts::default();
     for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
-        verdicts.classify(surrogate, found.iter().map(|run| Judged::of(&run.spectrum)), &block);
+        verdicts.classify_strictly(found.iter().map(|run| run.spectrum.top().excess), &block);
         Ok(())
     })?;
     let summary = monte_carlo(surrogate, SURROGATE_SAMPLES, seed, observer).map_err(|error| match error {

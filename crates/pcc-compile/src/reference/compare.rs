@@ -83,20 +83,27 @@ fn class(excess: f64) -> usize {
 }
 
 impl Verdicts {
-    /// Counts a point, given the largest excess by the surrogate and by the model with its error. What one of them
-    /// cannot tell from zero, and the other cannot with the errors of both, is no disagreement.
-    pub(super) fn add(&mut self, surrogate: f64, model: f64, rounding: f64) {
-        let is_rounding =
-            (surrogate == 0.0 && model.abs() <= rounding) || (model == 0.0 && surrogate.abs() <= rounding);
+    /// Counts a point, given the largest excess by the surrogate and by the model, and what the model's is told from
+    /// zero by: where the model cannot tell, a smaller excess of the surrogate is no disagreement.
+    fn add(&mut self, surrogate: f64, model: f64, rounding: f64) {
+        let is_rounding = model == 0.0 && surrogate.abs() <= rounding;
         let (said, truth) = (class(surrogate), class(model));
         self.counts[if is_rounding { truth } else { said }][truth] += 1;
     }
 
+    /// Counts a point by what each says, and nothing forgiven: what bounds are made of.
+    fn add_strictly(&mut self, surrogate: f64, model: f64) {
+        self.counts[class(surrogate)][class(model)] += 1;
+    }
+
     /// Counts the points of a block.
-    pub(super) fn classify(&mut self, surrogate: &Surrogate, model: impl Iterator<Item = Judged>, block: &Block) {
-        for (model, &excess) in model.zip(&block.excess) {
-            self.add(excess, model.excess, model.error.max(surrogate.verdict.tolerance));
-        }
+    fn classify(&mut self, model: impl Iterator<Item = Judged>, block: &Block) {
+        model.zip(&block.excess).for_each(|(model, &excess)| self.add(excess, model.excess, model.error));
+    }
+
+    /// The same, strictly.
+    pub(super) fn classify_strictly(&mut self, model: impl Iterator<Item = f64>, block: &Block) {
+        model.zip(&block.excess).for_each(|(model, &excess)| self.add_strictly(excess, model));
     }
 
     fn surrogate(&self, class: usize) -> u64 {
@@ -235,7 +242,7 @@ pub fn compare_with_model<'a>(
     let matching = Matching::new(surrogate, study.spectrum.target);
     for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs| {
         let block = surrogate_block(surrogate, &plan, points)?;
-        comparison.classify(surrogate, runs.iter().map(|run| Judged::of(&run.spectrum)), &block);
+        comparison.classify(runs.iter().map(|run| Judged::of(&run.spectrum)), &block);
         comparison.rigid_body_modes = runs.first().map_or(0, |run| run.spectrum.rigid_body_modes());
         let spectra: Vec<&Spectrum> = runs.iter().map(|run| &run.spectrum).collect();
         comparison.merge(errors(surrogate, &matching, &spectra, &block));
@@ -251,8 +258,8 @@ impl Comparison {
     }
 
     /// Counts on whose stability model and surrogate disagree.
-    pub(super) fn classify(&mut self, surrogate: &Surrogate, model: impl Iterator<Item = Judged>, block: &Block) {
-        self.verdicts.classify(surrogate, model, block);
+    pub(super) fn classify(&mut self, model: impl Iterator<Item = Judged>, block: &Block) {
+        self.verdicts.classify(model, block);
     }
 
     pub(super) fn merge(&mut self, errors: Vec<ComponentError>) {

@@ -161,7 +161,7 @@ impl<'a> ModelSample<'a> {
         let has_names = self.study.spectrum.target == Target::Invariants || !self.modes.is_empty();
         self.for_each_block(surrogate, &plan, self.len(), |start, block| {
             let range = start..start + block.max_re.len();
-            comparison.classify(surrogate, self.judged[range.clone()].iter().copied(), &block);
+            comparison.classify(self.judged[range.clone()].iter().copied(), &block);
             if !has_names {
                 return;
             }

@@ -319,6 +319,7 @@ fn verdict(stored: Option<v2::Verdict>) -> Result<VerdictBasis, ReadError> {
             modes: band.modes as usize,
             reals: band.reals as usize,
         }),
+        is_self_adjoint: stored.is_self_adjoint,
     };
     ensure("verdict", verdict != VerdictBasis::default(), || "it says nothing, and should not be there".to_owned())?;
     Ok(verdict)

@@ -291,12 +291,13 @@ fn closed_outputs_come_back_in_both_forms() {
 }
 
 /// What a verdict can rest on.
-static JUDGED: LazyLock<[Surrogate; 3]> = LazyLock::new(|| {
+static JUDGED: LazyLock<[Surrogate; 4]> = LazyLock::new(|| {
     let band = Band { lower: 0.0, upper: 500.0, modes: 6, reals: 1 };
     let bases = [
         VerdictBasis { rigid_body_modes: 2, ..VerdictBasis::default() },
         VerdictBasis { margin: Margin::GrowthRate(0.5), tolerance: 1e-9, ..VerdictBasis::default() },
         VerdictBasis { margin: Margin::DampingRatio(0.01), band: Some(band), ..VerdictBasis::default() },
+        VerdictBasis { is_self_adjoint: true, ..VerdictBasis::default() },
     ];
     bases.map(|verdict| Surrogate { verdict, ..SURROGATE.clone() })
 });
@@ -317,7 +318,13 @@ fn the_basis_of_the_verdict_comes_back_in_both_forms_and_belongs_to_the_content(
 fn verdicts_that_make_no_sense() {
     use v2::MarginKind::{DampingRatio, GrowthRate};
     let margin = |kind, value| v2::Margin { kind, value };
-    let nothing = v2::Verdict { rigid_body_modes: 0, tolerance: 0.0, margin: margin(GrowthRate, 0.0), band: None };
+    let nothing = v2::Verdict {
+        rigid_body_modes: 0,
+        tolerance: 0.0,
+        margin: margin(GrowthRate, 0.0),
+        band: None,
+        is_self_adjoint: false,
+    };
     let band = |lower, upper| Some(v2::Band { lower, upper, modes: 4, reals: 0 });
     let senseless = [
         nothing,
@@ -331,8 +338,8 @@ fn verdicts_that_make_no_sense() {
     for verdict in senseless {
         assert_eq!(section_of(meaning(|d| d.verdict = Some(verdict))), "verdict", "{verdict:?}");
     }
-    // Two rigid-body modes, no tolerance, no margin, no band.
-    let body = [2u32.to_le_bytes().as_slice(), &[0; 8], &[0; 4], &[0; 8], &[0]].concat();
+    // Two rigid-body modes, no tolerance, no margin, no band, not symmetric.
+    let body = [2u32.to_le_bytes().as_slice(), &[0; 8], &[0; 4], &[0; 8], &[0], &[0]].concat();
     // Readers must understand it: it cannot be optional, nor of a later version, nor of another length.
     let optional = forged(|bytes| bytes.extend(section(10, 0, &body)));
     assert!(matches!(decode(&optional), Err(ReadError::SectionTable(_))));
@@ -342,9 +349,9 @@ fn verdicts_that_make_no_sense() {
         bytes.extend(later);
     });
     assert!(matches!(decode(&later), Err(ReadError::UnknownSection { kind: 10, version: 2, .. })));
-    let long = forged(|bytes| bytes.extend(section(10, 1, &[0; 26])));
+    let long = forged(|bytes| bytes.extend(section(10, 1, &[0; 27])));
     assert_eq!(decode(&long), Err(ReadError::TrailingBytes { section: "verdict", bytes: 1 }));
-    let short = forged(|bytes| bytes.extend(section(10, 1, &[0; 24])));
+    let short = forged(|bytes| bytes.extend(section(10, 1, &[0; 25])));
     assert!(matches!(decode(&short), Err(ReadError::Decode { section: "verdict", .. })));
     let added = forged(|bytes| bytes.extend(section(10, 1, &body)));
     assert_eq!(decode(&added), Err(ReadError::ContentId));

@@ -241,6 +241,7 @@ fn verdict(verdict: VerdictBasis) -> Option<v2::Verdict> {
         tolerance: verdict.tolerance,
         margin: v2::Margin { kind, value },
         band: verdict.band.map(band),
+        is_self_adjoint: verdict.is_self_adjoint,
     };
     (verdict != VerdictBasis::default()).then_some(stored)
 }

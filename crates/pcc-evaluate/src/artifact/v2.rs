@@ -33,6 +33,9 @@ pub struct Verdict {
     pub margin: Margin,
     /// The band of frequencies by which modes were chosen.
     pub band: Option<Band>,
+    /// Whether the model is undamped and symmetric. Eigenvalues are then real or imaginary: of one that is neither, the
+    /// part with the smaller modulus is zero, Re λ if both are equal.
+    pub is_self_adjoint: bool,
 }
 
 /// How far eigenvalues must stay from instability: the excess of λ is to be negative.

@@ -42,6 +42,7 @@ impl Surrogate {
         for output in &self.outputs {
             output.recombine(components, &mut eigenvalues);
         }
+        eigenvalues.iter_mut().for_each(|lambda| *lambda = self.verdict.settled(*lambda));
         eigenvalues
     }
 

@@ -148,6 +148,8 @@ pub struct VerdictBasis {
     pub tolerance: f64,
     /// The band of frequencies that was asked for, if it was one.
     pub band: Option<Band>,
+    /// Whether the model is undamped and its matrices are symmetric: then λ² is real, and nothing flutters.
+    pub is_self_adjoint: bool,
 }
 
 /// The modes of a surrogate were chosen by their frequencies in the middle of the inputs.
@@ -164,6 +166,32 @@ pub struct Band {
 }
 
 impl VerdictBasis {
+    /// An eigenvalue as it can be: of a self-adjoint model it is real or imaginary, and the smaller part of a predicted
+    /// one is an error of the prediction.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use num_complex::Complex;
+    /// use pcc_evaluate::surrogate::VerdictBasis;
+    /// let symmetric = VerdictBasis { is_self_adjoint: true, ..VerdictBasis::default() };
+    /// assert_eq!(symmetric.settled(Complex::new(1e-3, 20.0)), Complex::new(0.0, 20.0));
+    /// assert_eq!(VerdictBasis::default().settled(Complex::new(1e-3, 20.0)), Complex::new(1e-3, 20.0));
+    /// ```
+    #[inline(always)]
+    pub fn settled(&self, lambda: Complex<f64>) -> Complex<f64> {
+        // NaN stays.
+        if !self.is_self_adjoint || lambda.re == 0.0 || lambda.im == 0.0 {
+            lambda
+        } else if lambda.im.abs() >= lambda.re.abs() {
+            Complex::new(0.0, lambda.im)
+        } else if lambda.re.abs() > lambda.im.abs() {
+            Complex::new(lambda.re, 0.0)
+        } else {
+            lambda
+        }
+    }
+
     /// What decides: the largest excess, of eigenvalues none of which is NaN.
     ///
     /// # Examples
@@ -180,9 +208,13 @@ impl VerdictBasis {
         let larger = |a: Complex<f64>, b: Complex<f64>| {
             if self.margin.excess(b) > self.margin.excess(a) { b } else { a }
         };
-        let decides = eigenvalues.iter().copied().reduce(larger).unwrap_or(Complex::new(f64::NEG_INFINITY, 0.0));
+        let decides = eigenvalues
+            .iter()
+            .map(|&lambda| self.settled(lambda))
+            .reduce(larger)
+            .unwrap_or(Complex::new(f64::NEG_INFINITY, 0.0));
         Top {
-            max_re: spectral_abscissa(eigenvalues),
+            max_re: if self.is_self_adjoint { decides.re } else { spectral_abscissa(eigenvalues) },
             excess: beyond_rounding(self.margin.excess(decides), self.tolerance),
             frequency: decides.im,
         }

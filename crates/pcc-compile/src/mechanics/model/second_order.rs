@@ -3,6 +3,9 @@
 use super::ModelError;
 use nalgebra::{DMatrix, Dyn, LU};
 
+/// Entries that should be equal may differ by so many roundings: each is a sum of terms.
+const ROUNDINGS: f64 = 8.0;
+
 /// Mass, damping and stiffness matrices of M Ü + C U̇ + K U = 0, n × n each, in units that fit together (kg, N·s/m and
 /// N/m for displacements in m); or their derivatives by a parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +91,22 @@ impl SecondOrder {
             second_order: Some(self),
             second_order_derivatives: derivatives,
         })
+    }
+
+    /// Whether M and K are symmetric but for rounding, M is positive definite, and C is zero: λ² is real.
+    pub fn is_self_adjoint(&self) -> bool {
+        let is_symmetric = |matrix: &DMatrix<f64>| {
+            (0..matrix.nrows()).all(|i| {
+                (0..i).all(|j| {
+                    let (below, above) = (matrix[(i, j)], matrix[(j, i)]);
+                    (below - above).abs() <= ROUNDINGS * f64::EPSILON * below.abs().max(above.abs())
+                })
+            })
+        };
+        is_zero(&self.damping)
+            && is_symmetric(&self.mass)
+            && is_symmetric(&self.stiffness)
+            && self.mass.clone().cholesky().is_some()
     }
 
     fn factored(&self) -> Result<LU<f64, Dyn, Dyn>, ModelError> {

@@ -14,6 +14,11 @@ const RIGID: f64 = 1e-6;
 /// stiffness.
 const CLEARLY_SMALLER: f64 = 1e-2;
 
+/// Bounds of errors are taken at their word up to this share of |λ|, and up to this share of the largest |λ|: they are
+/// of first order, and grow beyond all measure where eigenvalues coalesce.
+const KNOWN: f64 = 1e-6;
+const KNOWN_BESIDE: f64 = 1e-9;
+
 /// Imaginary parts at most this share of |λ| are rounding: the eigenvalue is real.
 const REAL: f64 = 1e-9;
 
@@ -144,8 +149,27 @@ impl Spectrum {
         let sizes: Vec<f64> = all.iter().map(|lambda| lambda.norm()).collect();
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         let least = Accuracy::least(largest);
-        let one = |at: usize| Eigenvalue::new(all[at], sizes[at], all_accuracies.get(at).copied().unwrap_or(least));
-        let kept: Vec<Eigenvalue> = without_smallest(&sizes, rigid_body_modes).into_iter().map(one).collect();
+        // First-order bounds of eigenvalues that are nearly defective say nothing.
+        let meaningful = |error: f64, size: f64| error <= KNOWN * size || error <= KNOWN_BESIDE * largest;
+        let accuracy = |at: usize| {
+            let Accuracy { re, whole } = all_accuracies.get(at).copied().unwrap_or(least);
+            let or_least = |error: f64| if meaningful(error, sizes[at]) { error } else { least.whole };
+            Accuracy { re: or_least(re), whole: or_least(whole) }
+        };
+        let one = |at: usize| Eigenvalue::new(all[at], sizes[at], accuracy(at));
+        let mut kept = without_smallest(&sizes, rigid_body_modes);
+        // A pair is not cut in two.
+        let is_whole = |kept: &[usize]| {
+            let has = |lambda: Complex<f64>| kept.iter().any(|&at| all[at] == lambda);
+            let is_cut = |at: &usize| all[*at].im < 0.0 && all.contains(&all[*at].conj()) && !has(all[*at].conj());
+            !kept.iter().any(is_cut)
+        };
+        let mut rigid_body_modes = rigid_body_modes;
+        if rigid_body_modes % 2 == 1 && !is_whole(&kept) {
+            rigid_body_modes -= 1;
+            kept = without_smallest(&sizes, rigid_body_modes);
+        }
+        let kept: Vec<Eigenvalue> = kept.into_iter().map(one).collect();
         let top = top(&kept, margin).ok_or(SpectrumError::OnlyRigid)?;
         let mut oscillating: Vec<&Eigenvalue> = kept.iter().filter(|one| one.lambda.im > 0.0).collect();
         oscillating.sort_by(|a, b| a.lambda.im.total_cmp(&b.lambda.im).then(a.lambda.re.total_cmp(&b.lambda.re)));
@@ -274,6 +298,11 @@ impl Spectrum {
         &self.accuracies
     }
 
+    /// Whether the accuracy of an eigenvalue was looked at, and is not just what no solver avoids.
+    pub fn is_accuracy_known(&self, position: usize) -> bool {
+        self.accuracies[position] != Accuracy::least(self.largest)
+    }
+
     /// Spectral abscissa max Re λ over every eigenvalue that is not a rigid-body zero, real ones included, in 1/s.
     pub fn max_re(&self) -> f64 {
         self.top.max_re
@@ -378,6 +407,25 @@ mod tests {
         assert_eq!(found.eigenvalues(), expected.map(|(re, im)| Complex::new(re, im)));
         assert_eq!((0..6).map(|at| found.conjugate(at)).collect::<Vec<_>>(), [0, 2, 1, 4, 3, 5]);
         assert_eq!(found.top(), Top { max_re: 3.0, excess: 3.0, frequency: 0.0 });
+    }
+
+    #[test]
+    fn errors_beyond_all_measure_do_not_make_growth_rates_zero() {
+        let lambdas =
+            [Complex::new(-0.5, 0.0), Complex::new(0.5, 0.0), Complex::new(1e-11, 30.0), Complex::new(-9.0, 0.0)];
+        let infinite = Accuracy { re: f64::INFINITY, whole: f64::INFINITY };
+        let small = Accuracy { re: 1e-10, whole: 1e-10 };
+        let found = Spectrum::with_zeros(&lambdas, &[infinite, infinite, small, small], 0, Margin::default()).unwrap();
+        assert_eq!(found.top(), Top { max_re: 0.5, excess: 0.5, frequency: 0.0 });
+        assert_eq!(found.mode(1).unwrap().re, 0.0);
+    }
+
+    #[test]
+    fn pairs_are_dropped_whole_or_not_at_all() {
+        let parts = [(0.0, 1e-9), (0.0, -1e-9), (-1.0, 100.0), (-1.0, -100.0)];
+        let lambdas: Vec<Complex<f64>> = parts.iter().map(|&(re, im)| Complex::new(re, im)).collect();
+        let found = Spectrum::with_zeros(&lambdas, &[], 1, Margin::default()).unwrap();
+        assert_eq!((found.rigid_body_modes(), found.eigenvalues().len()), (0, 4));
     }
 
     #[test]

@@ -35,6 +35,9 @@ pub(crate) fn recombine(outputs: &[Output], verdict: VerdictBasis, results: &mut
             (_, re, im) => lane_by_lane(output, components, re, im),
         }
     }
+    if verdict.is_self_adjoint {
+        settle(growth_rates, angular_frequencies, verdict);
+    }
     *max_re = spectral_abscissa(growth_rates, angular_frequencies);
     *excess = match verdict.margin.is_none() {
         true => *max_re,
@@ -75,6 +78,16 @@ fn frequency_of_largest(
         }
     }
     found
+}
+
+/// Leaves of every eigenvalue what it can be.
+fn settle(growth_rates: &mut [Lanes], angular_frequencies: &mut [Lanes], verdict: VerdictBasis) {
+    for (re, im) in growth_rates.iter_mut().zip(angular_frequencies) {
+        for lane in 0..BLOCK_POINTS {
+            let settled = verdict.settled(Complex::new(re.0[lane], im.0[lane]));
+            (re.0[lane], im.0[lane]) = (settled.re, settled.im);
+        }
+    }
 }
 
 /// The excess of one eigenvalue in every lane.
