@@ -16,7 +16,8 @@ const SCHEME: &str = "independent";
 const SURROGATE_SAMPLES: u64 = 1_000_000;
 
 /// Runs the model of a study, or of a campaign that keeps books of its runs, at `runs` fresh points and bounds its
-/// stability proportion from those at which `surrogate` disagrees ([`DiscordantCounts::bound`]).
+/// stability proportion from those at which `surrogate` disagrees
+/// ([`pcc_evaluate::probability::statistics::DiscordantCounts::bound`]).
 ///
 /// The points belong to a purpose of their own: they are independent of the design and of all evaluation points,
 /// whatever the seeds. The certificate is to be added to those the surrogate has; choosing among seeds by their result
