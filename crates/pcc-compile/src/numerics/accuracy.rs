@@ -75,21 +75,27 @@ impl SchurForm {
 }
 
 impl SchurForm {
-    /// The right eigenvector of the eigenvalue at `position` of [`SchurForm::eigenvalues`].
+    /// The right eigenvectors of the eigenvalues at `positions` of [`SchurForm::eigenvalues`], of no particular length.
     ///
     /// # Panics
     ///
-    /// If the position is beyond the matrix.
-    pub fn right_vector(&self, position: usize) -> DVector<Complex<f64>> {
+    /// If a position is beyond the matrix.
+    pub fn right_vectors(&self, positions: &[usize]) -> Vec<DVector<Complex<f64>>> {
+        if positions.is_empty() {
+            return Vec::new();
+        }
         let (triangular, basis) = triangular_form(self, self.basis().clone());
-        let mut vector = basis * right_vector(&triangular, position);
-        vector.iter_mut().zip(self.balance().iter()).for_each(|(entry, &factor)| *entry *= factor);
-        vector
+        let of = |&position: &usize| {
+            let mut vector = &basis * right_vector(&triangular, position);
+            vector.iter_mut().zip(self.balance().iter()).for_each(|(entry, &factor)| *entry *= factor);
+            vector
+        };
+        positions.iter().map(of).collect()
     }
 }
 
 /// ‖Re(w̄ vᵀ)‖_F and ‖w̄ vᵀ‖_F.
-pub fn outer_norms(left: &DVector<Complex<f64>>, right: &DVector<Complex<f64>>) -> (f64, f64) {
+fn outer_norms(left: &DVector<Complex<f64>>, right: &DVector<Complex<f64>>) -> (f64, f64) {
     let parts = |vector: &DVector<Complex<f64>>| {
         let (mut re, mut im, mut both) = (0.0, 0.0, 0.0);
         for entry in vector {

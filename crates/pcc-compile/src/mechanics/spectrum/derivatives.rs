@@ -90,12 +90,9 @@ impl ReducedSystem {
         let positions = positions(solution.eigenvalues(), eigenvalues)?;
         let together: Vec<usize> = positions.iter().copied().filter(|&at| solution.refined(at).is_none()).collect();
         let subspace = Some(&together).filter(|together| !together.is_empty()).map(|at| solution.schur().subspace(at));
-        let (subspace, single): (Option<Subspace>, Vec<&Refined>) = match subspace {
-            Some(subspace) if !subspace.is_separated() => {
-                let refined = solution.all_refined();
-                (None, positions.iter().map(|&at| refined[at].as_ref()).collect::<Option<_>>()?)
-            }
-            subspace => (subspace, positions.iter().filter_map(|&at| solution.refined(at)).collect()),
+        let (subspace, single): (Option<Subspace>, Vec<Refined>) = match subspace {
+            Some(subspace) if !subspace.is_separated() => (None, solution.with_vectors(&positions)?),
+            subspace => (subspace, positions.iter().filter_map(|&at| solution.refined(at).cloned()).collect()),
         };
         if single.is_empty() {
             return subspace.map(|subspace| Self::of_subspace(subspace, slopes, eigenvalues.to_vec()));
@@ -119,7 +116,7 @@ impl ReducedSystem {
     fn of_vectors(
         solution: &Solution,
         (subspace, mut eigenvalues): (Option<Subspace>, Vec<Complex<f64>>),
-        single: &[&Refined],
+        single: &[Refined],
         slopes: Slopes<'_>,
     ) -> Option<Self> {
         let (second_order, states) = (solution.second_order()?, solution.eigenvalues().len());

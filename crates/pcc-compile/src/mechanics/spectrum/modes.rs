@@ -89,24 +89,11 @@ impl Spectrum {
     ///
     /// [`SpectrumError::OnlyRigid`] if no eigenvalue remains.
     pub fn new(eigenvalues: &[Complex<f64>]) -> Result<Self, SpectrumError> {
-        Self::with_accuracies(eigenvalues, &[], Margin::default())
+        Self::with_zeros(eigenvalues, &[], Self::negligible(eigenvalues), Margin::default())
     }
 
-    /// The same of eigenvalues of known accuracy, none if it is not known, which are judged with a margin. Growth rates
-    /// that cannot be told from zero are zero.
-    ///
-    /// # Errors
-    ///
-    /// As [`Spectrum::new`].
-    pub fn with_accuracies(
-        eigenvalues: &[Complex<f64>],
-        accuracies: &[Accuracy],
-        margin: Margin,
-    ) -> Result<Self, SpectrumError> {
-        Self::with_zeros(eigenvalues, accuracies, Self::negligible(eigenvalues), margin)
-    }
-
-    /// The same with so many of the eigenvalues dropped as rigid-body motion, those with the smallest |λ|.
+    /// The same of eigenvalues of known accuracy, none if it is not known, which are judged with a margin: growth rates
+    /// that cannot be told from zero are zero. So many are dropped as rigid-body motion, those with the smallest |λ|.
     ///
     /// # Errors
     ///

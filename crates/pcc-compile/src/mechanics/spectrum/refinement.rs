@@ -85,25 +85,13 @@ impl<'s> QuadraticProblem<'s> {
         let start = right.unscale(length);
         let bordered = Bordered::new(self, eigenvalue, &start)?;
         let (mut lambda, mut u) = (eigenvalue, start.clone());
-        let mut before = f64::INFINITY;
-        for _ in 0..STEPS {
+        settle(|| {
             let residual = self.times(lambda, &u, false);
             let (step, change) = bordered.solve(&-residual, Complex::default())?;
-            (u, lambda) = (u + &step, lambda + change);
-            let size = step.norm().max(change.norm() / lambda.norm().max(f64::MIN_POSITIVE));
-            if !size.is_finite() {
-                return None;
-            }
-            // What no longer shrinks is rounding, or does not converge.
-            if size <= SETTLED || size >= 0.5 * before {
-                before = before.min(size);
-                break;
-            }
-            before = size;
-        }
-        if before > ACCEPTED {
-            return None;
-        }
+            u += &step;
+            lambda += change;
+            Some(step.norm().max(change.norm() / lambda.norm().max(f64::MIN_POSITIVE)))
+        })?;
         if eigenvalue.im == 0.0 {
             lambda.im = 0.0;
         }
@@ -121,24 +109,16 @@ impl<'s> QuadraticProblem<'s> {
     ) -> Option<DVector<Complex<f64>>> {
         let (size, one) = (u.len(), Complex::new(1.0, 0.0));
         let mut w = bordered.solve_transposed(&DVector::zeros(size), one)?.0;
-        let mut before = f64::INFINITY;
-        for _ in 0..STEPS {
+        settle(|| {
             let residual = self.times(lambda, &w, true);
             // The border keeps wᵀP′(σ)u₀ as it is.
             let (step, _) = bordered.solve_transposed(&-residual, Complex::default())?;
             let change = step.norm() / w.norm();
             w += step;
-            if !change.is_finite() {
-                return None;
-            }
-            if change <= SETTLED || change >= 0.5 * before {
-                before = before.min(change);
-                break;
-            }
-            before = change;
-        }
+            Some(change)
+        })?;
         let scale = w.dot(&self.derivative_times(lambda, u));
-        (before <= ACCEPTED && scale.norm() > 0.0).then(|| w / scale)
+        (scale.norm() > 0.0).then(|| w / scale)
     }
 
     /// P(λ)x or P(λ)ᵀx, rounded once.
@@ -225,6 +205,21 @@ impl Refined {
         let SecondOrder { mass, damping, stiffness } = derivative;
         -(form(mass) * lambda * lambda + form(damping) * lambda + form(stiffness))
     }
+}
+
+/// Takes steps until they no longer shrink, which is rounding, or the lack of convergence: `None` then. A step says how
+/// large it was, relative to what it changes.
+fn settle(mut step: impl FnMut() -> Option<f64>) -> Option<()> {
+    let mut before = f64::INFINITY;
+    for _ in 0..STEPS {
+        let size = step().filter(|size| size.is_finite())?;
+        if size <= SETTLED || size >= 0.5 * before {
+            before = before.min(size);
+            break;
+        }
+        before = size;
+    }
+    (before <= ACCEPTED).then_some(())
 }
 
 /// \[P(σ), s P′(σ)u₀; s′ u₀ᴴ, 0\], factorised; border and matrix are brought to the same size.

@@ -9,8 +9,7 @@ use super::refinement::{QuadraticProblem, Refined};
 use crate::mechanics::model::SecondOrder;
 use crate::numerics::accuracy::Accuracy;
 use crate::numerics::eigenvalues::{EigenvalueError, SchurForm};
-use nalgebra::{Complex, DMatrix, DVector};
-use std::sync::OnceLock;
+use nalgebra::{Complex, DMatrix};
 
 /// Growth rates up to this share of the largest |λ| are looked at: errors of simple eigenvalues are far below.
 const NEAR_AXIS: f64 = 1e-6;
@@ -32,8 +31,6 @@ pub struct Solution {
     eigenvalues: Vec<Complex<f64>>,
     accuracies: Vec<Accuracy>,
     refined: Vec<Option<Refined>>,
-    /// All others refined, too, if ever they are asked for.
-    all_refined: OnceLock<Vec<Option<Refined>>>,
 }
 
 impl Solution {
@@ -48,7 +45,7 @@ impl Solution {
         let least = Accuracy::least(sizes(&eigenvalues).into_iter().fold(0.0, f64::max));
         let count = eigenvalues.len();
         let (accuracies, refined) = (vec![least; count], vec![None; count]);
-        Ok(Self { schur, second_order, eigenvalues, accuracies, refined, all_refined: OnceLock::new() })
+        Ok(Self { schur, second_order, eigenvalues, accuracies, refined })
     }
 
     /// Looks at the accuracy of all eigenvalues but `rigid_body_modes`, those with the smallest |λ|, and refines what
@@ -72,14 +69,16 @@ impl Solution {
         let Some(second_order) = self.second_order.take() else { return };
         let problem = QuadraticProblem::new(&second_order);
         let worth = WORTH_REFINING * Accuracy::least(1.0).re;
-        let mut found: Vec<(usize, Refined)> = Vec::new();
-        for at in suspects {
-            let (lambda, accuracy) = (self.eigenvalues[at], self.accuracies[at]);
+        let is_worth_it = |at: &usize| {
+            let (lambda, accuracy) = (self.eigenvalues[*at], self.accuracies[*at]);
             let is_undecided = lambda.re.abs() <= accuracy.re && accuracy.re > worth * lambda.norm();
-            if is_undecided || accuracy.whole > ACCURATE * lambda.norm() {
-                found.extend(self.refine(&problem, at).map(|refined| (at, refined)));
-            }
-        }
+            is_undecided || accuracy.whole > ACCURATE * lambda.norm()
+        };
+        let tried: Vec<usize> = suspects.into_iter().filter(is_worth_it).collect();
+        let accuracies = tried.iter().map(|&at| self.accuracies[at]).collect();
+        let refined = self.refine(&problem, &tried, accuracies);
+        let found: Vec<(usize, Refined)> =
+            tried.iter().zip(refined).filter_map(|(&at, refined)| Some((at, refined?))).collect();
         // Two that end at the same place are one that was found twice, and one that was not found.
         let is_distinct = |(at, one): &(usize, Refined)| {
             found.iter().all(|(other, two)| {
@@ -93,15 +92,21 @@ impl Solution {
         self.second_order = Some(second_order);
     }
 
-    /// An eigenvalue of the solver, refined; none that has gone farther than its error.
-    fn refine(&self, problem: &QuadraticProblem<'_>, at: usize) -> Option<Refined> {
-        let state = self.schur.right_vector(at);
-        let displacements = DVector::from_fn(state.len() / 2, |i, _| state[i]);
-        let solved = self.schur.eigenvalues()[at];
-        let refined = problem.refine(solved, &displacements)?;
-        let moved = (refined.eigenvalue - solved).norm();
-        let known = self.schur.accuracies(&[at])[0].whole.max(ACCURATE * solved.norm());
-        (moved <= known).then_some(refined)
+    /// Eigenvalues of the solver at these positions with their accuracies, refined; none that has gone farther than its
+    /// error.
+    fn refine<'p>(
+        &'p self,
+        problem: &'p QuadraticProblem<'_>,
+        positions: &'p [usize],
+        accuracies: Vec<Accuracy>,
+    ) -> impl Iterator<Item = Option<Refined>> + 'p {
+        let states = self.schur.right_vectors(positions);
+        let solved = self.schur.eigenvalues();
+        positions.iter().zip(states).zip(accuracies).map(move |((&at, state), accuracy)| {
+            let refined = problem.refine(solved[at], &state.rows(0, state.len() / 2).into_owned())?;
+            let moved = (refined.eigenvalue - solved[at]).norm();
+            (moved <= accuracy.whole.max(ACCURATE * solved[at].norm())).then_some(refined)
+        })
     }
 
     fn set(&mut self, at: usize, lambda: Complex<f64>, accuracy: Accuracy, refined: Option<Refined>) {
@@ -141,29 +146,28 @@ impl Solution {
         self.refined[at].as_ref()
     }
 
-    /// The same of all eigenvalues of a second-order system, refined or not, as far as that is possible.
-    pub(super) fn all_refined(&self) -> &[Option<Refined>] {
-        self.all_refined.get_or_init(|| {
-            let Some(second_order) = &self.second_order else { return vec![None; self.eigenvalues.len()] };
-            let problem = QuadraticProblem::new(second_order);
-            let mut found: Vec<Option<Refined>> = self.refined.clone();
-            for at in 0..found.len() {
-                if found[at].is_some() {
-                    continue;
-                }
-                if self.eigenvalues[at].im < 0.0 && at > 0 {
-                    found[at] = found[at - 1].as_ref().map(Refined::conjugate);
-                    continue;
-                }
-                let mut refined = self.refine(&problem, at);
-                // Known to the digits of the solver before, it keeps its number.
-                if let Some(refined) = &mut refined {
-                    refined.eigenvalue = self.eigenvalues[at];
-                }
-                found[at] = refined;
+    /// The eigenvalues at these positions of a second-order system with vectors of their own, refined or not; `None` if
+    /// one of them cannot be separated from others.
+    pub(super) fn with_vectors(&self, positions: &[usize]) -> Option<Vec<Refined>> {
+        let problem = QuadraticProblem::new(self.second_order.as_ref()?);
+        // The upper half of each pair, once.
+        let upper = |at: usize| if self.eigenvalues[at].im < 0.0 { at.saturating_sub(1) } else { at };
+        let mut missing: Vec<usize> =
+            positions.iter().map(|&at| upper(at)).filter(|&at| self.refined[at].is_none()).collect();
+        missing.sort_unstable();
+        missing.dedup();
+        let accuracies = self.schur.accuracies(&missing);
+        let found: Vec<Refined> = self.refine(&problem, &missing, accuracies).collect::<Option<_>>()?;
+        let of = |&at: &usize| {
+            if let Some(refined) = &self.refined[at] {
+                return Some(refined.clone());
             }
-            found
-        })
+            let half = &found[missing.binary_search(&upper(at)).ok()?];
+            let own = if upper(at) == at { half.clone() } else { half.conjugate() };
+            // Known to the digits of the solver before, it keeps its number.
+            Some(Refined { eigenvalue: self.eigenvalues[at], ..own })
+        };
+        positions.iter().map(of).collect()
     }
 }
 
