@@ -6,10 +6,12 @@
 //! that of the prediction is one residual. Its quantiles are stored, for the band that `eval` prints.
 //!
 //! **Error of the proportion.** The residuals of run i are added to the components at many random points; the share of
-//! points that change sides, Δp_i (stable gained minus lost), is what the proportion would be off by if the surrogate
-//! erred by that much everywhere. Only points where max Re is near zero change sides, and runs are weighted by how near
-//! their own max Re is, w_i = 1/(1 + (max Re_i/median)²). Errors at distant points of the stability boundary are taken
-//! as independent, about one per design point, so with the effective number of runs n = (Σw)²/Σw² the estimate is
+//! points that change sides, Δp_i (points that are not unstable, gained minus lost), is what the proportion would be
+//! off by if the surrogate erred by that much everywhere. Only points where the largest excess e, max Re with the
+//! margin, is near zero change sides, and runs are weighted by how near their own is, w_i = 1/(1 + (e_i/median)²).
+//! Marginal points do not say how near they are, so they are tried evenly spread. Errors at distant points of the
+//! stability boundary are taken as independent, about one per design point, so with the effective number of runs n =
+//! (Σw)²/Σw² the estimate is
 //!
 //! ε² = (rms(Δp)² (1 + 1/√k)² + 1/T²)/n + mean(Δp)² [only if beyond four standard errors] + δ² + f²,
 //!
@@ -43,7 +45,8 @@ const LEVELS: [f64; 9] = [0.005, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99
 /// Points at which proportions are compared between levels: T.
 const POINTS: usize = 50_000;
 
-/// Points that are tried for changing sides, those with the smallest |max Re|: the others are too far away.
+/// Points that are tried for changing sides, those with the smallest excess, and as many marginal ones: the others are
+/// too far away.
 const TRIED_POINTS: usize = 10_000;
 
 /// Runs whose residuals are tried, evenly spread: more change the estimate less than it is uncertain anyway.

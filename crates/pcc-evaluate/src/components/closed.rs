@@ -264,6 +264,22 @@ mod tests {
         assert_eq!(names(&found(&group, 0)), [(-1.0, 0.0), (-1.0, 5.0), (-1.0, -5.0), (-3.0, 0.0)]);
     }
 
+    /// Whatever the coefficients are rounded to, what neither grows nor decays has Re λ = 0.
+    #[test]
+    fn undamped_groups_lie_on_the_axes_exactly() {
+        let undamped = [pair(0.0, 3.0), pair(0.0, 7.1), pair(0.0, 11.3)];
+        for lambda in found(&undamped.concat(), 3) {
+            assert_eq!(lambda.re, 0.0);
+        }
+        let divergent = [pair(0.0, 3.0).as_slice(), &[real(2.0), real(-2.0)]].concat();
+        let found_two = found(&divergent, 2);
+        assert!(found_two[0].re == 0.0 && (found_two[0].im - 3.0).abs() < 1e-12);
+        assert!(found_two[1].im == 0.0 && (found_two[1].re - 2.0).abs() < 1e-12);
+        let flutter = [pair(0.5, 4.0), pair(-0.5, 4.0)].concat();
+        let largest = found(&flutter, 2).iter().map(|lambda| lambda.re).fold(0.0, f64::max);
+        assert!((largest - 0.5).abs() < 1e-12);
+    }
+
     #[test]
     fn broken_values_give_broken_eigenvalues() {
         for broken in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {

@@ -191,6 +191,33 @@ pub fn spectral_abscissa(eigenvalues: &[Complex<f64>]) -> f64 {
 mod tests {
     use super::*;
 
+    /// λ = i, 4i and 6i, and i, 5i ± 0.5: z = λ − s has c₁ real and c₀ imaginary.
+    #[test]
+    fn undamped_clusters_lie_on_the_axis_or_symmetric_to_it_exactly() {
+        for lambdas in [[(0.0, 1.0), (0.0, 4.0), (0.0, 6.0)], [(0.0, 1.0), (0.5, 5.0), (-0.5, 5.0)]] {
+            let lambdas = lambdas.map(|(re, im)| Complex::new(re, im));
+            let mean = lambdas.iter().sum::<Complex<f64>>() / 3.0;
+            let [a, b, c] = lambdas.map(|lambda| lambda - mean);
+            let (c_1, c_0) = (a * b + b * c + c * a, -(a * b * c));
+            let component = |id| Component { id, name: String::new(), center: 0.0, scale: 1.0 };
+            let output = Output {
+                kind: OutputKind::Cluster,
+                modes: vec![1, 2, 3],
+                reals: Vec::new(),
+                name: String::new(),
+                unit: String::new(),
+                components: (0..6).map(component).collect(),
+            };
+            let mut found = Vec::new();
+            output.recombine(&[0.0, mean.im, c_1.re, 0.0, 0.0, c_0.im], &mut found);
+            let expected = lambdas.iter().map(|lambda| lambda.re).fold(0.0, f64::max);
+            assert!((spectral_abscissa(&found) - expected).abs() < 1e-12, "{found:?}");
+            assert_eq!(found[0].re, 0.0, "{found:?}");
+            assert!((found[0].im - 1.0).abs() < 1e-12);
+            assert_eq!(found.iter().map(|lambda| lambda.re).sum::<f64>(), 0.0, "{found:?}");
+        }
+    }
+
     #[test]
     fn spectral_abscissa_is_the_largest_real_part_and_never_hides_nan() {
         let lambda = Complex::new;
