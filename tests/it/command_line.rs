@@ -762,7 +762,7 @@ fn studies_by_invariants_that_cannot_be_built_say_why() {
             "derivatives of eigenvalues",
             format!("{}[fit]\nderivatives = true\n", study.replace("\"invariants\"", "\"eigenvalues\"")),
         ),
-        ("derivatives beyond memory", format!("{study}[design]\nmaximum = 5000\n")),
+        ("derivatives beyond memory", format!("{study}[design]\nmaximum = 9000\n")),
         ("derivatives neither yes nor no", format!("{study}[fit]\nderivatives = \"yes\"\n")),
         ("derivatives that are a number", format!("{study}[fit]\nderivatives = 3\n")),
         ("an unknown target", study.replace("\"invariants\"", "\"invariant\"")),

@@ -25,7 +25,9 @@ pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: 
     match (method.profile().design, target) {
         (Design::QuadraturePerElement, _) => 10 * PAPERS_LIMIT as usize,
         (Design::Quadrature | Design::Oversampled(_), _) | (_, Target::Eigenvalues) => PAPERS_LIMIT as usize,
-        _ if derivatives => (3_000 / (1 + inputs)).max(initial(target, inputs, derivatives)),
+        _ if derivatives => {
+            (3_000 / (1 + inputs)).max(initial(target, inputs, derivatives) + step(target, inputs, derivatives))
+        }
         _ => 2_000,
     }
 }
@@ -45,12 +47,12 @@ pub(super) fn design(target: Target) -> DesignKind {
 }
 
 /// Runs of the first level. Eigenvalues need some terms for every pair of inputs at high degree; invariants few; with
-/// derivatives each run tells r + 1 times as much.
+/// derivatives each run tells r + 1 times as much. Of many inputs few matter: at most half of what a design may have.
 pub(super) fn initial(target: Target, inputs: usize, derivatives: bool) -> usize {
     match target {
-        Target::Eigenvalues => 15 * inputs * inputs,
-        _ if derivatives => (2 * inputs).max(5),
-        _ => (inputs * inputs + 7 * inputs).max(10),
+        Target::Eigenvalues => (15 * inputs * inputs).min(5_000),
+        _ if derivatives => (2 * inputs).clamp(5, 50),
+        _ => (inputs * inputs + 7 * inputs).clamp(10, 1_000),
     }
 }
 
@@ -58,7 +60,7 @@ pub(super) fn initial(target: Target, inputs: usize, derivatives: bool) -> usize
 /// judged by.
 pub(super) fn step(target: Target, inputs: usize, derivatives: bool) -> usize {
     if target != Target::Eigenvalues && derivatives {
-        (3 * inputs).max(5)
+        (3 * inputs).clamp(5, 75)
     } else {
         initial(target, inputs, derivatives)
     }

@@ -267,22 +267,13 @@ pub enum StudyError {
         /// Largest design.
         maximum: usize,
     },
-    /// The design with derivatives gives more equations than a fit can hold in memory.
-    #[error(
-        "design.maximum ({maximum}) with derivatives by {inputs} inputs gives {equations} equations, more than {most}; lower it \
-         to {fitting} or set fit.derivatives = false"
-    )]
-    TooManyEquations {
-        /// Number of inputs.
-        inputs: usize,
+    /// The design with derivatives has more runs than a fit can hold in memory.
+    #[error("design.maximum ({maximum}) is more than a fit with derivatives can hold in memory; lower it to {most}")]
+    TooLargeDesign {
         /// Largest design.
         maximum: usize,
-        /// Values and derivatives.
-        equations: usize,
         /// The most.
         most: usize,
-        /// The largest design that fits.
-        fitting: usize,
     },
     /// An input has the name of a column of results.
     #[error("{place}: results have a column {name}, so that no input can have this name; choose another")]

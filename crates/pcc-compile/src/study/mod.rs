@@ -109,6 +109,13 @@ impl Study {
         self.fit.use_derivatives(self.spectrum.target, &self.model)
     }
 
+    /// Whether it says itself how large the design may become: another number than the default.
+    pub fn limits_runs(&self) -> bool {
+        let (inputs, derivatives) = (self.inputs.dimension(), self.uses_derivatives());
+        let default = defaults::maximum(self.spectrum.target, inputs, derivatives, &self.fit.method);
+        self.design.maximum != default.max(self.design.initial)
+    }
+
     /// Hash of the model: its kind, its constants and the names of its inputs, not their distributions. Runs of models
     /// with the same hash at the same point have the same answer. SHA-256.
     pub fn model_hash(&self) -> [u8; 32] {

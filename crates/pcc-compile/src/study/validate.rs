@@ -21,8 +21,8 @@ const DESIGNS: [DesignKind; 3] = [DesignKind::NestedLhs, DesignKind::NestedMaxim
 
 const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 
-/// Values and derivatives that a minimum-norm fit may take: matrices of half a gigabyte.
-const MOST_EQUATIONS: usize = 8_000;
+/// Runs that a minimum-norm fit with derivatives may take: matrices of half a gigabyte.
+const MOST_RUNS: usize = 8_000;
 
 /// Rigid-body motion that a study may ask for: more than the largest model has.
 const MOST_RIGID: usize = 2_000;
@@ -59,10 +59,8 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     if !fit.method.has_fixed_design() && numbers > LARGEST_TABLES {
         return Err(StudyError::TooLarge { inputs: dimension, max_degree, maximum: design.maximum });
     }
-    let equations = design.maximum.saturating_mul(1 + dimension);
-    if derivatives && !fit.method.profile().is_least_squares && equations > MOST_EQUATIONS {
-        let (inputs, maximum, most) = (dimension, design.maximum, MOST_EQUATIONS);
-        return Err(StudyError::TooManyEquations { inputs, maximum, equations, most, fitting: most / (1 + inputs) });
+    if derivatives && !fit.method.profile().is_least_squares && design.maximum > MOST_RUNS {
+        return Err(StudyError::TooLargeDesign { maximum: design.maximum, most: MOST_RUNS });
     }
     Ok(Study { name, seed, model, inputs, spectrum, design, fit })
 }
@@ -331,7 +329,9 @@ impl Lines<'_> {
         let default_initial = defaults::initial(target, inputs, derivatives);
         let default_step = defaults::step(target, inputs, derivatives);
         let initial_was_given = raw.initial.is_some();
-        let initial = self.size("design.initial", raw.initial, 2, default_initial.min(maximum))?;
+        // One level alone has nothing to be judged by.
+        let default_initial = if default_initial < maximum { default_initial } else { maximum.div_ceil(2).max(2) };
+        let initial = self.size("design.initial", raw.initial, 2, default_initial)?;
         let step = self.size("design.step", raw.step, 1, default_step)?;
         match maximum_place {
             Some(place) if initial_was_given && initial > maximum => Err(StudyError::OutOfRange {

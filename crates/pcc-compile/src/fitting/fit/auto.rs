@@ -67,6 +67,20 @@ impl Solver for Ready<'_> {
     ) -> Result<Option<MethodFit>, Interrupted> {
         fit(tables, response, &self.candidates, self.settings, previous, observer).map(Some)
     }
+
+    /// The trial is the minimum-norm fit.
+    fn complete(
+        &self,
+        (smooth, _, trial): MethodFit,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &Previous,
+        _: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<MethodFit>, Interrupted> {
+        let smooth = (smooth, trial.minimum_norm);
+        better(tables, response, (&self.candidates, self.settings), previous, smooth, observer).map(Some)
+    }
 }
 
 /// Fits one component: `response.values[i]` belongs to point i of `tables`. Returns the fit, the name of its method,
@@ -83,7 +97,21 @@ pub fn fit(
     previous: &Previous,
     observer: &dyn Observer,
 ) -> Result<MethodFit, Interrupted> {
-    let (smooth, minimum_norm) = minimum_norm::fit(tables, response, settings, &previous.minimum_norm, observer)?;
+    let smooth = minimum_norm::fit(tables, response, settings, &previous.minimum_norm, observer)?;
+    better(tables, response, (candidates, settings), previous, smooth, observer)
+}
+
+/// The minimum-norm fit or pursuit.
+fn better(
+    tables: &BasisTables,
+    response: Response<'_>,
+    (candidates, settings): (&Candidates, &Smooth),
+    previous: &Previous,
+    (smooth, minimum_norm): (Fitted, minimum_norm::Previous),
+    observer: &dyn Observer,
+) -> Result<MethodFit, Interrupted> {
+    let fewer = minimum_norm::fewer_derivatives(response, tables.inputs());
+    let response = Response { gradients: fewer.as_ref().or(response.gradients), ..response };
     let mut previous = Previous { minimum_norm, ..*previous };
     if !previous.tries_pursuit || smooth.errors.is_none() {
         return Ok((smooth, minimum_norm::METHOD.name, previous));

@@ -262,6 +262,24 @@ pub trait Solver: Sync {
         can_grow: bool,
         observer: &dyn Observer,
     ) -> Result<Option<MethodFit>, Interrupted>;
+
+    /// The same where a trial solver ([`FitMethod::trial_solver`]) has fitted the same component on the same design,
+    /// from the same `previous`. Methods that have no use for that begin anew.
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`] soon after the observer asks to stop.
+    fn complete(
+        &self,
+        _trial: MethodFit,
+        tables: &BasisTables,
+        response: Response<'_>,
+        previous: &Previous,
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<MethodFit>, Interrupted> {
+        self.fit(tables, response, previous, can_grow, observer)
+    }
 }
 
 impl FitMethod {

@@ -29,7 +29,7 @@ use super::method::{self, Entry, FitMethod, MAX_DEGREE, MethodFit, Profile, S2_T
 use super::prior_search::{Found, Search, most_runs};
 use super::regularized::Regularized;
 use super::{BlindResiduals, Fitted};
-use crate::fitting::regression::{BasisTables, Equations, ErrorMeasures, Response};
+use crate::fitting::regression::{BasisTables, Equations, ErrorMeasures, Gradients, Response};
 use nalgebra::{DMatrix, DVector};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::polynomials::{IndexSet, MultiIndex};
@@ -54,6 +54,23 @@ const WORTH_A_SEARCH: f64 = 1.3;
 
 /// So many new blind residuals need no older ones beside them.
 const ENOUGH_BLIND: usize = 40;
+
+/// Equations of a fit at most, of few and of many inputs: each fit costs the cube of their number, and systems with
+/// many inputs have many components. Beyond it the last runs give their values alone.
+const MOST_EQUATIONS: (usize, usize) = (3_000, 800);
+
+/// The product of equations and inputs between them.
+const EQUATIONS_BY_INPUTS: usize = 24_000;
+
+/// Equations with derivatives that a fit takes at most.
+pub fn most_equations(inputs: usize) -> usize {
+    (EQUATIONS_BY_INPUTS / inputs.max(1)).clamp(MOST_EQUATIONS.1, MOST_EQUATIONS.0)
+}
+
+/// The derivatives of the first runs where all are more than a fit can take; `None` if it can take all.
+pub(super) fn fewer_derivatives(response: Response<'_>, inputs: usize) -> Option<Gradients> {
+    response.gradients?.within(response.values.len(), most_equations(inputs))
+}
 
 /// Refinements of the coefficients: each gains about five digits of the sixteen.
 const REFINEMENTS: usize = 3;
@@ -147,6 +164,8 @@ pub fn fit(
     observer: &dyn Observer,
 ) -> Result<(Fitted, Previous), Interrupted> {
     let inputs = tables.inputs();
+    let fewer = fewer_derivatives(response, inputs);
+    let response = Response { gradients: fewer.as_ref().or(response.gradients), ..response };
     let Some(variance) = response.variance() else {
         return Ok((Fitted::constant(inputs, response.values), previous.clone()));
     };

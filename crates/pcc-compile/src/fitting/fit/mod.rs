@@ -84,6 +84,18 @@ impl Fitted {
         })
     }
 
+    /// The mean of values that vary, with its errors: S² below zero.
+    ///
+    /// # Errors
+    ///
+    /// [`Interrupted`] soon after the observer asks to stop.
+    pub fn mean_of(tables: &BasisTables, response: Response<'_>, observer: &dyn Observer) -> Result<Self, Interrupted> {
+        match response.variance() {
+            Some(variance) => Self::mean(tables, response, variance, observer),
+            None => Ok(Self::constant(tables.inputs(), response.values)),
+        }
+    }
+
     /// The mean of values that vary but could not be fitted: S² below zero says so.
     fn mean(
         tables: &BasisTables,

@@ -15,6 +15,19 @@ pub struct Gradients {
     pub slopes: Vec<f64>,
 }
 
+impl Gradients {
+    /// Those of the first points, as many as with a value at each of `samples` points are not more than `most`
+    /// equations; `None` if that is all.
+    pub fn within(&self, samples: usize, most: usize) -> Option<Self> {
+        let count = self.points.len();
+        let inputs = self.slopes.len() / count.max(1);
+        let kept = most.saturating_sub(samples) / inputs.max(1);
+        let first = |j: usize| self.slopes[j * count..j * count + kept].iter().copied();
+        (kept < count)
+            .then(|| Self { points: self.points[..kept].to_vec(), slopes: (0..inputs).flat_map(first).collect() })
+    }
+}
+
 /// The numbering of equations: a value at each of N points, then, input by input, derivatives at some of them.
 ///
 /// A model run gives one *block* of equations, which are left out together.
@@ -110,4 +123,18 @@ pub fn leave_runs_out(equations: &Equations, q: &DMatrixView<'_, f64>, residuals
         left_out.leverages.push(1.0 - 1.0 / first[0]);
     }
     Some(left_out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_derivatives_stay_within_a_number_of_equations() {
+        let all = Gradients { points: vec![0, 2, 3], slopes: vec![1.0, 2.0, 3.0, 10.0, 20.0, 30.0] };
+        let two = Gradients { points: vec![0, 2], slopes: vec![1.0, 2.0, 10.0, 20.0] };
+        assert_eq!(all.within(4, 9), Some(two), "four values and two derivatives at two points");
+        assert_eq!(all.within(4, 10), None, "all");
+        assert_eq!(all.within(4, 3).map(|none| none.points.len()), Some(0));
+    }
 }
