@@ -87,6 +87,36 @@ impl FailedRun {
     }
 }
 
+/// The word for why a build ended early, if it did.
+fn ended_early(surrogate: &Surrogate) -> Option<&str> {
+    let setting = surrogate.training.settings.iter().find(|setting| setting.key == "ended")?;
+    match &setting.value {
+        SettingValue::Text(reason) => Some(reason),
+        _ => None,
+    }
+}
+
+/// Why a build ended before everything was as good as the study asks for.
+fn ended(reason: &str, surrogate: &Surrogate) -> String {
+    let runs = count(surrogate.training.counts.direct_computations);
+    let best = match surrogate.training.levels.last() {
+        Some(&last) if last < surrogate.training.counts.direct_computations => {
+            format!(", of which the first {} gave the best fit", count(last))
+        }
+        _ => String::new(),
+    };
+    let why = match reason {
+        "error-stalled" => {
+            "because the estimated error of the proportion hardly falls any more, as where answers are noisy or have kinks"
+        }
+        "fits-cost-more" => {
+            "because fits take far longer than the runs of this model; set design.maximum to let it go on"
+        }
+        _ => "because it was stopped",
+    };
+    format!("the build ended after {runs} model runs{best} {why}")
+}
+
 impl RecordedRuns {
     /// What to know of runs that failed.
     fn warning(&self) -> Option<String> {
@@ -142,6 +172,7 @@ impl FitReport {
         let warning = |fit: &Self| {
             let name = &fit.name;
             match fit.s2 {
+                _ if fit.has_stalled() => None,
                 Some(s2) if s2 < 0.0 => Some(format!(
                     "{name} is predicted worse than by its mean (S² {s2:.2}); do not trust what depends on it"
                 )),
@@ -150,7 +181,23 @@ impl FitReport {
                 _ => None,
             }
         };
-        fits.iter().filter_map(warning).collect()
+        fits.iter().filter_map(warning).chain(Self::stalled(fits)).collect()
+    }
+
+    /// Components of which more runs would not be known better.
+    fn stalled(fits: &[Self]) -> Option<String> {
+        let names: Vec<&str> = fits.iter().filter(|fit| fit.has_stalled()).map(|fit| fit.name.as_str()).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "the errors of {} no longer fall with more runs: what is left of them is noise of the model's answers, or detail \
+                 beyond designs of this size",
+                names.join(", ")
+            )
+        })
+    }
+
+    fn has_stalled(&self) -> bool {
+        self.stop == StopReason::Stalled.describe()
     }
 
     /// The same for a method, which says what else there is to know and what can be done.
@@ -184,7 +231,7 @@ impl FitReport {
                 "one design does not tell how far the proportion is off, and S² says little of it; check with pcc compare or certify"
                     .to_owned(),
             ),
-            _ if has(StopReason::DesignExhausted) => warnings
+            _ if has(StopReason::DesignExhausted) && ended_early(surrogate).is_none() => warnings
                 .push("the design reached design.maximum before the fit was accurate; raise it for more".to_owned()),
             _ => {}
         }
@@ -235,6 +282,7 @@ impl FitReport {
             );
         }
         warnings.extend(Self::distrusted(surrogate));
+        warnings.extend(ended_early(surrogate).map(|reason| ended(reason, surrogate)));
         match (surrogate.decision.proportion_error, tolerance) {
             (Some(error), tolerance) if unlisted.is_none() && error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; \
@@ -242,7 +290,7 @@ impl FitReport {
                 significant(100.0 * error, 2)
             )),
             (None, Some(_)) => warnings.push(
-                "the error of the proportion could not be estimated: that takes two design levels, and cases that are stable".to_owned(),
+                "the error of the proportion could not be estimated: that takes two design levels".to_owned(),
             ),
             _ => {}
         }

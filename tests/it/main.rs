@@ -9,6 +9,7 @@ mod clutch_reference;
 mod command_line;
 mod derivatives;
 mod determinism;
+mod endings;
 mod evaluation;
 mod field;
 mod full_expansions;

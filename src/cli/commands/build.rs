@@ -34,6 +34,10 @@ pub(in crate::cli) struct Options {
     #[arg(long, value_name = "S", value_parser = seed())]
     pub seed: Option<u64>,
 
+    /// When Ctrl-C stops the build, write the best level that it has instead of nothing
+    #[arg(long)]
+    pub best: bool,
+
     /// Print the study with every default filled in, and build nothing
     #[arg(long)]
     pub show_study: bool,
@@ -67,6 +71,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         .unwrap_or_else(|| PathBuf::from(format!("{}.{}", study.name, asked.unwrap_or(Format::Binary).extension())));
     let format = asked.unwrap_or_else(|| Format::of_path(&path));
     refuse_to_replace(&path, Output::Surrogate, &[])?;
+    context.terminal.take_what_there_is(options.best);
     let source = options.study.display().to_string();
     let built = context.build_to_file(&study, &source, &path, format, &options.recording.to_recording())?;
     context.print(&BuildReport::of_file(&study, &built, path.display().to_string()))?;

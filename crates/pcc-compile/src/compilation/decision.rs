@@ -83,6 +83,21 @@ pub(super) struct Previous {
     mean_change: f64,
 }
 
+impl Previous {
+    /// What errors are relative to: the proportion, or all points where it is zero.
+    fn reference(&self) -> f64 {
+        if self.proportion > 0.0 { self.proportion } else { 1.0 }
+    }
+}
+
+/// What a judgement goes by of the level before.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Before {
+    pub previous: Previous,
+    /// Whether groups have changed since: then no residuals are blind, and no error is small enough.
+    pub is_regrouped: bool,
+}
+
 /// What is known of a surrogate's decision.
 #[derive(Default)]
 pub(super) struct Judgement {
@@ -98,14 +113,14 @@ pub(super) struct Judgement {
     pub previous: Option<Previous>,
 }
 
-/// Judges `surrogate`, fitted to `values` of its components at `runs`; `previous` is the judgement of the level before.
+/// Judges `surrogate`, fitted to `values` of its components at `runs`; `before` is the judgement of the level before.
 /// If there is none and the level `is_last`, nothing can be estimated, and the points it would take are not evaluated.
 pub(super) fn judge(
     surrogate: &Surrogate,
     fitted: &[Fitted],
     values: &[Vec<f64>],
     runs: &[Run],
-    previous: Option<Previous>,
+    before: Option<Before>,
     is_last: bool,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
@@ -118,24 +133,31 @@ pub(super) fn judge(
     let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
     let unlisted = (0..runs.len()).filter(|&i| contradicts(surrogate, values, i, &runs[i])).count() as u64;
     let forgotten = unlisted as f64 / runs.len() as f64;
-    if is_last && previous.is_none() && forgotten == 0.0 {
+    if is_last && before.is_none() && forgotten == 0.0 {
         let decision = Decision { max_re_residuals, proportion_error: None };
         return Ok(Judgement { decision, unlisted, ..Judgement::default() });
     }
     let judge = Judge::new(surrogate, runs, observer)?;
     let by_seen = judge.shares(&seen, 0)?;
     let now = Previous { proportion: judge.proportion(), mean_change: by_seen.mean_of(f64::abs) };
-    let (reducible_error, whole_error) = match previous {
-        Some(previous) if blind.len() >= LEAST_BLIND.min(runs.len()) => {
+    let unseen = 1.0 / POINTS as f64;
+    let (reducible_error, whole_error) = match before {
+        Some(Before { previous, is_regrouped: false }) if blind.len() >= LEAST_BLIND.min(runs.len()) => {
             let by_blind = judge.shares(&blind, runs.len() - blind.len())?;
             let error = |unseen| Some(relative_error(&by_blind, judge.effective_runs(), previous, now, unseen));
-            (error(0.0), error(1.0 / POINTS as f64))
+            (error(0.0), error(unseen))
         }
-        _ => (None, None),
+        Some(Before { previous, .. }) => {
+            // Residuals that flatter, and all of the change between the levels.
+            let honest = judge.shares(&honest_residuals(&seen, &blind), 0)?;
+            let change = (now.proportion - previous.proportion) / now.reference();
+            (None, Some(relative_error(&honest, judge.effective_runs(), now, now, unseen).hypot(change)))
+        }
+        None => (None, None),
     };
     let error = match whole_error {
         None if forgotten == 0.0 => None,
-        error => Some(error.unwrap_or(0.0).hypot(forgotten / now.proportion)).filter(|error| error.is_finite()),
+        error => Some(error.unwrap_or(0.0).hypot(forgotten / now.reference())).filter(|error| error.is_finite()),
     };
     let decision = Decision { max_re_residuals, proportion_error: error };
     let undecided = undecided(surrogate, values, &seen, runs);
@@ -199,7 +221,8 @@ pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &
     Judgement { decision, unlisted, ..Judgement::default() }
 }
 
-/// ε of the module's head, relative to the proportion, where shares below `unseen` are not seen.
+/// ε of the module's head, relative to the proportion, or to the whole where that is zero, where shares below `unseen`
+/// are not seen.
 fn relative_error(shares: &Shares, effective_runs: f64, previous: Previous, now: Previous, unseen: f64) -> f64 {
     let square = shares.mean_of(|share| share * share);
     let mean = shares.mean_of(|share| share);
@@ -211,7 +234,7 @@ fn relative_error(shares: &Shares, effective_runs: f64, previous: Previous, now:
     let change = (now.proportion - previous.proportion) * left;
     let cautious = square * (1.0 + count.sqrt().recip()).powi(2);
     let error = ((cautious + unseen * unseen) / effective_runs + systematic * systematic + change * change).sqrt();
-    error / now.proportion
+    error / now.reference()
 }
 
 /// Shares of points that change sides, one per run, with the weights of the runs.
@@ -397,6 +420,7 @@ mod tests {
         assert!((relative_error(&none, 10.0, previous, now, UNSEEN) - 0.02 * 0.1 / 0.5).abs() < UNSEEN);
         let resolved = relative_error(&none, 10.0, now, now, UNSEEN);
         assert!(resolved > 0.0 && resolved < UNSEEN, "nothing seen is not nothing there");
-        assert_eq!(relative_error(&none, 10.0, previous, Previous { proportion: 0.0, ..now }, UNSEEN), f64::INFINITY);
+        let nowhere = Previous { proportion: 0.0, ..now };
+        assert!(relative_error(&none, 10.0, nowhere, nowhere, UNSEEN) < UNSEEN, "nothing is stable, and that is known");
     }
 }

@@ -3,18 +3,17 @@
 //! Many groupings share groups: each group is fitted once per design, and starts from what the smaller designs have
 //! taught of it.
 
-use super::components::{Care, ComponentFit, ComponentResult};
+use super::components::{Care, ComponentFit, ComponentResult, Learnt, Start};
 use super::evaluations::responses;
 use crate::campaign::Run;
 use crate::fitting::design::Samples;
-use crate::fitting::fit::method::Previous;
 use crate::fitting::regression::{BasisTables, Gradients, Response};
 use crate::mechanics::spectrum::{Group, Groups, Labels, Numbers, component_errors, components_of, nearest, output};
 use crate::numerics::accuracy::Accuracy;
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::{Output, OutputKind};
-use pcc_evaluate::foundation::{Interrupted, Observer};
+use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
 use pcc_evaluate::surrogate::VerdictBasis;
 use std::collections::HashMap;
 
@@ -76,9 +75,9 @@ pub(super) struct GroupFits<'a> {
     fit: ComponentFit<'a>,
     current: HashMap<Group, GroupFit>,
     /// What smaller designs have taught of the components of each group.
-    previous: HashMap<Group, Vec<Previous>>,
+    previous: HashMap<Group, Vec<Learnt>>,
     /// What the current design teaches.
-    learnt: HashMap<Group, Vec<Previous>>,
+    learnt: HashMap<Group, Vec<Learnt>>,
     tables: Option<BasisTables>,
 }
 
@@ -115,18 +114,12 @@ impl<'a> GroupFits<'a> {
         let mut new: Vec<(&Group, GroupFit)> = Vec::with_capacity(missing.len());
         for group in missing {
             let known = self.current.remove(group);
-            new.push((group, known.unwrap_or_else(|| self.unfitted(group, followed))));
+            new.push((group, known.map_or_else(|| self.unfitted(group, followed, observer), Ok)?));
         }
         let Some(tables) = self.tables.as_ref().filter(|_| !new.is_empty()) else { return Ok(()) };
         let responses: Vec<Response<'_>> = new.iter().flat_map(|(_, fit)| fit.responses()).collect();
-        let previous: Vec<Previous> = new
-            .iter()
-            .flat_map(|(group, fit)| match self.previous.get(group) {
-                Some(known) => known.clone(),
-                None => vec![self.fit.nothing(); fit.values.len()],
-            })
-            .collect();
-        let found = self.fit.fit(tables, &responses, &previous, (care, can_grow), observer)?;
+        let starts: Vec<Start> = new.iter().flat_map(|(group, fit)| self.starts(group, fit)).collect();
+        let found = self.fit.fit(tables, &responses, starts, (care, can_grow), observer)?;
         let mut found = found.unwrap_or_default().into_iter();
         for (group, fit) in &mut new {
             let (fits, learnt) = found.by_ref().take(fit.values.len()).unzip();
@@ -138,6 +131,18 @@ impl<'a> GroupFits<'a> {
         Ok(())
     }
 
+    /// Where the fits of the components of a group begin.
+    fn starts(&self, group: &Group, fit: &GroupFit) -> Vec<Start> {
+        let previous = self.previous.get(group);
+        let trials = fit.fits.iter().zip(self.learnt.get(group).into_iter().flatten());
+        let mut trials = trials.map(|(fit, learnt)| (fit.clone(), learnt.clone()));
+        let start = |k: usize| Start {
+            previous: previous.map_or_else(|| self.fit.nothing(), |known| known[k].clone()),
+            trial: trials.next(),
+        };
+        (0..fit.values.len()).map(start).collect()
+    }
+
     /// Fits one more component with these values on the current design, by way of trial.
     pub fn trial_of_values(
         &self,
@@ -146,8 +151,14 @@ impl<'a> GroupFits<'a> {
     ) -> Result<Option<ComponentResult>, Interrupted> {
         let Some(tables) = &self.tables else { return Ok(None) };
         let response = Response::of(values, 0.0);
-        let found = self.fit.fit(tables, &[response], &[self.fit.nothing()], (Care::Trial, false), observer)?;
+        let start = Start::from(&self.fit.nothing());
+        let found = self.fit.fit(tables, &[response], vec![start], (Care::Trial, false), observer)?;
         Ok(found.and_then(|mut found| found.pop()).map(|(fit, _)| fit))
+    }
+
+    /// What all fits have cost ([`ComponentFit::work`]).
+    pub fn work(&self) -> u64 {
+        self.fit.work()
     }
 
     /// A group that was added.
@@ -168,7 +179,12 @@ impl<'a> GroupFits<'a> {
         found
     }
 
-    fn unfitted(&self, group: &Group, followed: &Followed<'_>) -> GroupFit {
+    fn unfitted(
+        &self,
+        group: &Group,
+        followed: &Followed<'_>,
+        observer: &dyn Observer,
+    ) -> Result<GroupFit, Interrupted> {
         let eigenvalues = followed.eigenvalues(group);
         let (modes, reals) = followed.groups.modes_and_reals(group);
         let numbers = Numbers { modes: (1..=modes).collect(), reals: (1..=reals).collect() };
@@ -178,14 +194,17 @@ impl<'a> GroupFits<'a> {
             let at_run = components_of(group.kind(), lambdas);
             values.iter_mut().zip(at_run).for_each(|(list, value)| list.push(value));
         }
-        let mut gradients = followed.has_derivatives.then(|| self.gradients(&output, &eigenvalues, followed));
+        let mut gradients = match followed.has_derivatives {
+            true => Some(self.gradients(&output, &eigenvalues, followed, observer)?),
+            false => None,
+        };
         for component in vanishing(group, &values, &eigenvalues, followed) {
             values[component].fill(0.0);
             if let Some(gradients) = &mut gradients {
                 gradients[component].slopes.fill(0.0);
             }
         }
-        GroupFit {
+        Ok(GroupFit {
             gradients,
             resolutions: finer(resolutions(&output, followed.runs), group, &eigenvalues, followed),
             output,
@@ -194,16 +213,25 @@ impl<'a> GroupFits<'a> {
             fits: Vec::new(),
             care: Care::Trial,
             score: f64::INFINITY,
-        }
+        })
     }
 
     /// The derivatives of each component in standardized variables. Runs in which the group cannot be separated from
     /// the rest of the spectrum have none.
-    fn gradients(&self, output: &Output, eigenvalues: &[Vec<Complex<f64>>], followed: &Followed<'_>) -> Vec<Gradients> {
-        let slopes =
-            |(i, run): (usize, &Run)| Some((i, run.reductions.as_ref()?.differentiate(output.kind, &eigenvalues[i])?));
-        let found: Vec<(usize, Vec<Vec<f64>>)> = followed.runs.iter().enumerate().filter_map(slopes).collect();
-        gradients(&found, output.components.len(), followed.samples, self.study)
+    fn gradients(
+        &self,
+        output: &Output,
+        eigenvalues: &[Vec<Complex<f64>>],
+        followed: &Followed<'_>,
+        observer: &dyn Observer,
+    ) -> Result<Vec<Gradients>, Interrupted> {
+        let slopes = |i: usize| {
+            observer.check()?;
+            let reductions = followed.runs[i].reductions.as_ref();
+            Ok(reductions.and_then(|found| Some((i, found.differentiate(output.kind, &eigenvalues[i])?))))
+        };
+        let found: Vec<(usize, Vec<Vec<f64>>)> = try_map(followed.runs.len(), slopes)?.into_iter().flatten().collect();
+        Ok(gradients(&found, output.components.len(), followed.samples, self.study))
     }
 }
 

@@ -50,8 +50,13 @@ impl<'a> GroupedEigenvalues<'a> {
     }
 
     /// Why the last level cannot be the last word.
-    pub fn refusal(self) -> Option<BuildError> {
-        self.refusal
+    pub fn refusal(&self) -> Option<&BuildError> {
+        self.refusal.as_ref()
+    }
+
+    /// What all fits have cost ([`ComponentFit::work`]).
+    pub fn work(&self) -> u64 {
+        self.fits.work()
     }
 
     /// Groups, fits and numbers everything on the current design. `None` if the method asks for a larger one.

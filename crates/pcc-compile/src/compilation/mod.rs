@@ -4,11 +4,14 @@ mod components;
 mod decision;
 mod elements;
 mod error;
+mod error_history;
 mod evaluations;
 mod group_fits;
 mod grouped;
 mod grouping;
 mod infinite;
+mod level_remark;
+mod levels;
 mod numbering;
 mod ranked;
 mod record;
@@ -24,15 +27,8 @@ pub use to_file::{BuildFileError, BuiltFile, build_to_file};
 
 use crate::campaign::{Campaign, Ledger, Run};
 use crate::mechanics::model::Model;
-use crate::mechanics::spectrum::Target;
-use components::{ComponentFit, ComponentResult};
-use decision::judge;
-use evaluations::{Evaluations, Level, groups};
-use grouped::GroupedEigenvalues;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::surrogate::Surrogate;
-use ranked::RankedModes;
-use stopping::StoppingRule;
 
 /// Builds the surrogate of a study, or of a campaign that keeps books of its runs, on the current rayon thread pool:
 /// the same bits for any number of threads.
@@ -41,8 +37,9 @@ use stopping::StoppingRule;
 /// enter the fit beside the values if the study wants them and the model has them. All components share one nested
 /// design. Level by level it grows by one step until every component is fitted well enough and, if the study asks for
 /// it, the estimated error of the stability proportion is small enough, or has not fallen while the design grew by four
-/// levels to twice its size. Eigenvalues are followed and grouped anew at each level; no model run is repeated or
-/// dropped.
+/// levels to twice its size, or, of models that pcc computes, until the fits cost more than they are worth; the best
+/// level is the result then. Eigenvalues are followed and grouped anew at each level; no model run is repeated or
+/// dropped. The observer may ask to stop and [take what there is](Observer::takes_what_there_is).
 ///
 /// # Errors
 ///
@@ -91,102 +88,11 @@ fn built(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer)
     let campaign = Campaign { study, ledger: Some(ledger.unwrap_or(&blank)) };
     match study.fit.method.is_quadrature() {
         true => elements::build(campaign, model, observer),
-        false => by_levels(campaign, model, observer),
-    }
-}
-
-/// The paper's five steps (section 3.3.3), for all components on one design: a level is a design of one size, with
-/// everything fitted anew.
-fn by_levels(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Built, BuildError> {
-    let study = campaign.study;
-    let mut fitting = Fitting::new(campaign)?;
-    let mut evaluations = Evaluations::new(campaign, model, matches!(fitting, Fitting::Ranked(_)))?;
-    let mut stopping = StoppingRule::new(study);
-    let (mut sizes, mut grouping, mut previous) = (Vec::new(), Vec::new(), None);
-    let mut size = study.design.initial;
-    loop {
-        // Step 1: the design, and the model at its points.
-        sizes.push(size as u64);
-        evaluations.grow_to(size, observer)?;
-        // Steps 2 and 3: what the components are, and their terms and coefficients.
-        let next = study.design.next_size(size).filter(|_| !study.fit.method.has_fixed_design());
-        let fitted = fitting.fit(&mut evaluations, next.is_some(), observer)?;
-        // Step 4: a design that is too small for the terms that matter grows.
-        let (level, fitted) = match (next, fitted) {
-            (Some(next), None) => {
-                size = next;
-                continue;
-            }
-            (None, None) => (evaluations.by_rank()?, Vec::new()),
-            (_, Some(fitted)) => fitted,
-        };
-        if groups(&level.outputs) != groups(&grouping) {
-            previous = None;
-        }
-        grouping.clone_from(&level.outputs);
-        // Step 5: enough, or the next level.
-        let mut surrogate = record::surrogate(study, &evaluations, &level, &fitted, &sizes);
-        let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
-        let is_last = next.is_none() || stopping.needs_no_judgement(&results);
-        let judgement = judge(&surrogate, &results, &level.values, evaluations.runs(), previous, is_last, observer)?;
-        record::judged(&mut surrogate, &judgement, evaluations.runs());
-        previous = judgement.previous;
-        stopping.note(judgement.reducible_error, size);
-        match next {
-            Some(next) if !stopping.holds(&results, &judgement, size) => size = next,
-            _ => {
-                if let Some(refusal) = fitting.refusal() {
-                    return Err(refusal);
-                }
-                surrogate.self_test = surrogate.make_self_test(record::self_test_points(study));
-                let rigid_body_modes = rigid_body_modes(evaluations.runs());
-                return Ok(Built { surrogate, rigid_body_modes });
-            }
-        }
+        false => levels::build(campaign, model, observer),
     }
 }
 
 /// How much is rigid-body motion in all of these runs.
 fn rigid_body_modes(runs: &[Run]) -> usize {
     runs.iter().map(|run| run.spectrum.rigid_body_modes()).min().unwrap_or(0)
-}
-
-/// How eigenvalues become components.
-enum Fitting<'a> {
-    /// Modes have frequency ranks.
-    Ranked(RankedModes<'a>),
-    /// Eigenvalues are followed, and grouped by prediction.
-    Grouped(Box<GroupedEigenvalues<'a>>),
-}
-
-impl<'a> Fitting<'a> {
-    fn new(campaign: Campaign<'a>) -> Result<Self, BuildError> {
-        let study = campaign.study;
-        let fit = ComponentFit::new(study)?;
-        let is_grouped = study.spectrum.target == Target::Invariants && study.fit.method.fits_every_design();
-        Ok(match is_grouped {
-            true => Self::Grouped(Box::new(GroupedEigenvalues::new(study, fit))),
-            false => Self::Ranked(RankedModes::new(fit)),
-        })
-    }
-
-    /// Why the last level cannot be the last word.
-    fn refusal(self) -> Option<BuildError> {
-        match self {
-            Self::Ranked(_) => None,
-            Self::Grouped(eigenvalues) => eigenvalues.refusal(),
-        }
-    }
-
-    fn fit(
-        &mut self,
-        evaluations: &mut Evaluations<'_>,
-        can_grow: bool,
-        observer: &dyn Observer,
-    ) -> Result<Option<(Level, Vec<ComponentResult>)>, BuildError> {
-        match self {
-            Self::Ranked(modes) => modes.fit(evaluations, can_grow, observer),
-            Self::Grouped(eigenvalues) => eigenvalues.fit(evaluations, can_grow, observer),
-        }
-    }
 }

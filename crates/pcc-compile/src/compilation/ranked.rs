@@ -1,9 +1,8 @@
 //! Levels whose modes have frequency ranks: the paper's way, and that of methods that ask for larger designs.
 
 use super::BuildError;
-use super::components::{Care, ComponentFit, ComponentResult};
+use super::components::{Care, ComponentFit, ComponentResult, Learnt, Start};
 use super::evaluations::{Evaluations, Level, groups};
-use crate::fitting::fit::method::Previous;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
 
@@ -11,7 +10,7 @@ use pcc_evaluate::foundation::Observer;
 pub(super) struct RankedModes<'a> {
     fit: ComponentFit<'a>,
     grouping: Vec<Output>,
-    previous: Vec<Previous>,
+    previous: Vec<Learnt>,
 }
 
 impl<'a> RankedModes<'a> {
@@ -35,7 +34,8 @@ impl<'a> RankedModes<'a> {
         let responses = level.responses();
         let with_slopes = responses.iter().any(|response| response.gradients.is_some());
         let tables = self.fit.tables(&level.samples, with_slopes);
-        let found = self.fit.fit(&tables, &responses, &self.previous, (Care::Full, can_grow), observer)?;
+        let starts = self.previous.iter().map(Start::from).collect();
+        let found = self.fit.fit(&tables, &responses, starts, (Care::Full, can_grow), observer)?;
         let Some(found) = found else { return Ok(None) };
         let (results, previous) = found.into_iter().unzip();
         self.previous = previous;

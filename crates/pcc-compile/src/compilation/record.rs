@@ -3,6 +3,7 @@
 use super::components::ComponentResult;
 use super::decision::Judgement;
 use super::evaluations::{Evaluations, Level};
+use super::stopping::EarlyEnd;
 use crate::campaign::Run;
 use crate::fitting::design::NestedLatinHypercube;
 use crate::fitting::fit::method::{MethodSetting, Value};
@@ -109,6 +110,13 @@ pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[R
     if judgement.unlisted > 0 {
         surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
     }
+}
+
+/// Takes down all runs that were spent, and why the build ended early, if it did.
+pub(super) fn ended(surrogate: &mut Surrogate, evaluations: &Evaluations<'_>, early_end: Option<EarlyEnd>) {
+    surrogate.training.counts.direct_computations = (evaluations.runs().len() + evaluations.failed()) as u64;
+    let word = early_end.map(|end| setting("ended", SettingValue::Text(end.name().to_owned())));
+    surrogate.training.settings.extend(word);
 }
 
 fn new<'a>(

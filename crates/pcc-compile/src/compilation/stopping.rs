@@ -1,37 +1,66 @@
 //! The stopping rule: when a design is large enough.
 //!
 //! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error of the
-//! stability proportion is small enough and explains how many runs are undecided (`undecided.rs`); or when that error
-//! has not fallen for [`PATIENCE`] levels while the design grew to [`GROWTH`] times its size; or at the largest design.
+//! stability proportion is small enough and explains how many runs are undecided (`undecided.rs`). It ends as well when
+//! more runs are of no use: when that error has fallen more slowly than 1/√N for [`PATIENCE`] levels, over which the
+//! design grew to [`GROWTH`] times its size; when the fits have cost more than a model that is quickly run is worth; or
+//! at the largest design.
 
 use super::decision::Judgement;
 use crate::fitting::fit::Fitted;
 use crate::study::Study;
 use pcc_evaluate::surrogate::StopReason;
 
-/// Levels without a lower estimate, and growth of the design over them, after which more runs are taken to be of no
-/// use: where stability is within rounding of its limit everywhere, or where the model jumps.
+/// Levels without a much lower estimate, and growth of the design over them, after which more runs are taken to be of
+/// no use: where answers are noisy, stability is within rounding of its limit everywhere, or the model jumps.
 const PATIENCE: usize = 4;
 const GROWTH: usize = 2;
+
+/// Work of fits ([`super::components::ComponentFit::work`]) after which no further level is begun, if the model is one
+/// that `pcc` computes and the study does not say how many runs it is worth: some twenty seconds of one processor. A
+/// run of such a model takes less than one.
+const MOST_WORK: u64 = 20_000_000_000;
+
+/// Levels that are fitted whatever they cost: a first one is not judged, and groups change.
+const LEAST_LEVELS: usize = 2;
+
+/// Why a build ended before everything was as good as the study asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum EarlyEnd {
+    /// The estimated error of the proportion hardly falls any more.
+    ErrorStalled,
+    /// The fits cost more than more runs are worth.
+    FitsCostMore,
+    /// The user asked to stop and to take what there is.
+    Interrupted,
+}
+
+impl EarlyEnd {
+    /// The word of the record.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ErrorStalled => "error-stalled",
+            Self::FitsCostMore => "fits-cost-more",
+            Self::Interrupted => "interrupted",
+        }
+    }
+}
 
 /// Whether a level is good enough, and whether the estimated error of the proportion still falls.
 pub(super) struct StoppingRule {
     /// Estimated relative error of the proportion that is small enough; without it the fits alone decide.
     tolerance: Option<f64>,
-    lowest: f64,
-    /// Size of the design at the lowest estimate.
-    at_size: usize,
-    levels_since: usize,
+    /// Work that fits may take.
+    most_work: u64,
+    /// Size of the design and estimated error of the proportion, level by level.
+    errors: Vec<(usize, f64)>,
+    levels: usize,
 }
 
 impl StoppingRule {
     pub fn new(study: &Study) -> Self {
-        Self {
-            tolerance: study.fit.proportion_tolerance,
-            lowest: f64::INFINITY,
-            at_size: study.design.initial,
-            levels_since: 0,
-        }
+        let most_work = if study.model.is_external() || study.limits_runs() { u64::MAX } else { MOST_WORK };
+        Self { tolerance: study.fit.proportion_tolerance, most_work, errors: Vec::new(), levels: 0 }
     }
 
     /// Whether the fits of a level are the last word, whatever the proportion.
@@ -41,25 +70,34 @@ impl StoppingRule {
 
     /// Takes note of the estimated error at a size of the design.
     pub fn note(&mut self, error: Option<f64>, size: usize) {
-        match error {
-            Some(error) if error < self.lowest => {
-                (self.lowest, self.at_size, self.levels_since) = (error, size, 0);
-            }
-            Some(_) => self.levels_since += 1,
-            // Too few blind residuals yet: nothing is known to have stalled.
-            None => {}
-        }
+        self.levels += 1;
+        self.errors.extend(error.map(|error| (size, error)));
     }
 
-    /// Whether a level with these fits and this judgement is the last.
-    pub fn holds(&self, fitted: &[Fitted], judgement: &Judgement, size: usize) -> bool {
+    /// Whether a level with these fits and this judgement is good enough.
+    pub fn holds(&self, fitted: &[Fitted], judgement: &Judgement) -> bool {
         let is_small =
             |tolerance| !judgement.is_doubtful && judgement.reducible_error.is_some_and(|error| error <= tolerance);
-        are_accurate(fitted) && (self.tolerance.is_none_or(is_small) || self.has_stalled(size))
+        are_accurate(fitted) && self.tolerance.is_none_or(is_small)
     }
 
-    fn has_stalled(&self, size: usize) -> bool {
-        self.levels_since >= PATIENCE && size >= GROWTH * self.at_size
+    /// Why a level that is not good enough is the last nevertheless, after so much work of fits.
+    pub fn early_end(&self, fitted: &[Fitted], work: u64) -> Option<EarlyEnd> {
+        if are_accurate(fitted) && self.has_stalled() {
+            return Some(EarlyEnd::ErrorStalled);
+        }
+        (self.levels >= LEAST_LEVELS && work > self.most_work).then_some(EarlyEnd::FitsCostMore)
+    }
+
+    /// Whether the lowest of the last estimates is above what 1/√N makes of those before.
+    fn has_stalled(&self) -> bool {
+        let Some((former, last)) = self.errors.len().checked_sub(PATIENCE).map(|at| self.errors.split_at(at)) else {
+            return false;
+        };
+        let Some(&(size, lowest)) = last.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return false };
+        let newest = last.last().map_or(size, |&(size, _)| size);
+        let expected = |&(before, error): &(usize, f64)| error * (before as f64 / size as f64).sqrt();
+        former.iter().filter(|(before, _)| newest >= GROWTH * before).map(expected).any(|expected| expected < lowest)
     }
 }
 
@@ -77,23 +115,23 @@ mod tests {
     }
 
     fn rule(tolerance: Option<f64>) -> StoppingRule {
-        StoppingRule { tolerance, lowest: f64::INFINITY, at_size: 10, levels_since: 0 }
+        StoppingRule { tolerance, most_work: 100, errors: Vec::new(), levels: 0 }
     }
 
     #[test]
     fn a_small_error_ends_the_build_and_a_large_one_does_not() {
         let mut rule = rule(Some(1e-3));
         rule.note(Some(2e-3), 10);
-        assert!(!rule.holds(&[], &judged(Some(2e-3)), 10));
-        assert!(rule.holds(&[], &judged(Some(1e-3)), 20));
-        assert!(!rule.holds(&[], &judged(None), 20), "what is not known is not small");
+        assert!(!rule.holds(&[], &judged(Some(2e-3))));
+        assert!(rule.holds(&[], &judged(Some(1e-3))));
+        assert!(!rule.holds(&[], &judged(None)), "what is not known is not small");
         let doubtful = Judgement { is_doubtful: true, ..judged(Some(1e-3)) };
-        assert!(!rule.holds(&[], &doubtful, 20), "one eigenvalue is not known well enough");
+        assert!(!rule.holds(&[], &doubtful), "one eigenvalue is not known well enough");
     }
 
     #[test]
     fn without_a_tolerance_the_fits_decide() {
-        assert!(rule(None).needs_no_judgement(&[]) && rule(None).holds(&[], &judged(None), 10));
+        assert!(rule(None).needs_no_judgement(&[]) && rule(None).holds(&[], &judged(None)));
         assert!(!rule(Some(1e-3)).needs_no_judgement(&[]));
     }
 
@@ -103,12 +141,23 @@ mod tests {
         rule.note(Some(1e-3), 10);
         for size in [12, 14, 16] {
             rule.note(Some(2e-3), size);
-            assert!(!rule.holds(&[], &judged(Some(2e-3)), size), "{size}");
+            assert_eq!(rule.early_end(&[], 0), None, "{size}");
         }
-        rule.note(Some(2e-3), 18);
-        assert!(!rule.holds(&[], &judged(Some(2e-3)), 18), "four levels, but not twice the size");
-        assert!(rule.holds(&[], &judged(Some(2e-3)), 20));
-        rule.note(Some(5e-4), 20);
-        assert!(!rule.holds(&[], &judged(Some(5e-4)), 20), "it falls again");
+        rule.note(Some(0.9e-3), 18);
+        assert_eq!(rule.early_end(&[], 0), None, "four levels, but not twice the size");
+        rule.note(Some(0.95e-3), 20);
+        assert_eq!(rule.early_end(&[], 0), Some(EarlyEnd::ErrorStalled), "slower than 1/√N");
+        rule.note(Some(5e-4), 22);
+        assert_eq!(rule.early_end(&[], 0), None, "it falls again");
+    }
+
+    #[test]
+    fn fits_that_cost_more_than_they_are_worth_end_the_build_once_it_can_be_judged() {
+        let mut rule = rule(Some(1e-9));
+        rule.note(None, 10);
+        assert_eq!(rule.early_end(&[], 1000), None, "nothing is known yet");
+        rule.note(None, 20);
+        assert_eq!(rule.early_end(&[], 100), None);
+        assert_eq!(rule.early_end(&[], 101), Some(EarlyEnd::FitsCostMore));
     }
 }

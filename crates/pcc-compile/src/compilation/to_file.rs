@@ -88,6 +88,10 @@ pub fn build_to_file(
         failures: books.ledger.failures(),
         elapsed_seconds,
     };
-    books.close();
+    match observer.interrupted() {
+        // The build could go on.
+        true => books.give_up(true).iter().for_each(tell),
+        false => books.close(),
+    }
     Ok(file)
 }

@@ -32,6 +32,9 @@ const RESIDUALS: f64 = 3.0;
 /// Swap ratios below this follow two modes through a crossing.
 const FOLLOWED: f64 = 0.005;
 
+/// Pairs that are tried at most, those that come nearest: systems with many modes have many that are dense.
+const MOST_PAIRS: usize = 20;
+
 /// The grouping with neighbours united whose predicted distance closes somewhere.
 pub(super) fn with_unseen_groups(
     study: &Study,
@@ -120,11 +123,24 @@ fn neighbours(followed: &Followed<'_>, grouping: &Grouping) -> Vec<[Group; 2]> {
         let distances = || (0..followed.runs.len()).map(distance);
         distances().fold(f64::INFINITY, f64::min) < APPROACHING * distances().fold(0.0, f64::max)
     };
-    singles
+    let nearness = |pair: &[Group; 2]| {
+        let (a, b) = (pair[0].labels()[0], pair[1].labels()[0]);
+        let distance = |run: usize| {
+            let (a, b) = (followed.eigenvalue(run, a), followed.eigenvalue(run, b));
+            (b - a).norm() / b.norm()
+        };
+        (0..followed.runs.len()).map(distance).fold(f64::INFINITY, f64::min)
+    };
+    let mut pairs: Vec<[Group; 2]> = singles
         .windows(2)
         .filter(|pair| approaches(pair[0], pair[1]) && !crosses(pair[0], pair[1]))
         .map(|pair| [pair[0].clone(), pair[1].clone()])
-        .collect()
+        .collect();
+    if pairs.len() > MOST_PAIRS {
+        pairs.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)).then(a.cmp(b)));
+        pairs.truncate(MOST_PAIRS);
+    }
+    pairs
 }
 
 /// Whether d of a pair comes near zero at some of the points.

@@ -251,6 +251,7 @@ fn expansion(expansion: v1::Expansion, index_sets: &[IndexSet]) -> Result<Expans
             v1::Stop::GivenDegree => StopReason::GivenDegree,
             v1::Stop::Settled => StopReason::Settled,
             v1::Stop::Limited => StopReason::Limited,
+            v1::Stop::Stalled => StopReason::Stalled,
         },
     })
 }

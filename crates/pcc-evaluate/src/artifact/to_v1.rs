@@ -180,6 +180,7 @@ fn expansions(surrogate: &Surrogate) -> v1::Expansions {
                     StopReason::GivenDegree => v1::Stop::GivenDegree,
                     StopReason::Settled => v1::Stop::Settled,
                     StopReason::Limited => v1::Stop::Limited,
+                    StopReason::Stalled => v1::Stop::Stalled,
                 },
             }
         })

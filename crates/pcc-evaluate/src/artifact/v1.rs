@@ -351,6 +351,8 @@ pub enum Stop {
     Settled,
     /// Elements that ask to be divided are left. Since format 1.2.
     Limited,
+    /// The error no longer fell as the design grew. Since format 1.3.
+    Stalled,
 }
 
 /// Section 6: how the surrogate was trained.

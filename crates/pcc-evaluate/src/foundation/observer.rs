@@ -31,6 +31,14 @@ pub trait Observer: Sync {
     /// The stage ended.
     fn finish(&self);
 
+    /// Something worth a line is known that the end result does not tell: what a level of a build has shown.
+    fn remark(&self, _: &str) {}
+
+    /// Whether work that the user stops is to give what it has, where that is of use.
+    fn takes_what_there_is(&self) -> bool {
+        false
+    }
+
     /// Whether the user asked to stop.
     fn interrupted(&self) -> bool;
 

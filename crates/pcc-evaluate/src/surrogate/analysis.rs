@@ -81,7 +81,7 @@ fn severity(stop: StopReason) -> usize {
     match stop {
         StopReason::Constant => 0,
         StopReason::Accurate | StopReason::GivenDegree | StopReason::Settled => 1,
-        StopReason::HighestDegree => 2,
+        StopReason::HighestDegree | StopReason::Stalled => 2,
         StopReason::DesignExhausted | StopReason::Limited => 3,
     }
 }

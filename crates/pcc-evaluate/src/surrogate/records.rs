@@ -58,6 +58,8 @@ pub enum StopReason {
     HighestDegree,
     /// The design could not grow any further.
     DesignExhausted,
+    /// The error no longer falls as the design grows: what is left is noise, or detail beyond designs of this size.
+    Stalled,
     /// The values do not vary: the mean is exact.
     Constant,
     /// The degree was given: nothing was searched.
@@ -75,6 +77,7 @@ impl StopReason {
             Self::Accurate => "accurate",
             Self::HighestDegree => "highest degree",
             Self::DesignExhausted => "design exhausted",
+            Self::Stalled => "stalled",
             Self::Constant => "constant",
             Self::GivenDegree => "given degree",
             Self::Settled => "elements settled",

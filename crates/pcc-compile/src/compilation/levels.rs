@@ -1,0 +1,200 @@
+//! The loop of the build: the paper's five steps (section 3.3.3), for all components on one design. A level is a design
+//! of one size, with everything fitted anew.
+
+use super::components::{ComponentFit, ComponentResult};
+use super::decision::{Before, Previous, judge};
+use super::evaluations::{Evaluations, Level, groups};
+use super::grouped::GroupedEigenvalues;
+use super::level_remark::{Spent, remark, slowest};
+use super::ranked::RankedModes;
+use super::stopping::{EarlyEnd, StoppingRule};
+use super::{BuildError, Built, record, rigid_body_modes};
+use crate::campaign::Campaign;
+use crate::mechanics::model::Model;
+use crate::mechanics::spectrum::Target;
+use crate::study::Study;
+use pcc_evaluate::components::Output;
+use pcc_evaluate::foundation::{Observer, is_interruption};
+use pcc_evaluate::surrogate::Surrogate;
+use std::time::Instant;
+
+/// A level takes the place of an earlier one unless its estimated error is so many times as large.
+const MUCH_WORSE: f64 = 1.5;
+
+/// Builds level by level, until the stopping rule holds.
+pub(super) fn build(
+    campaign: Campaign<'_>,
+    model: Box<dyn Model>,
+    observer: &dyn Observer,
+) -> Result<Built, BuildError> {
+    let mut levels = Levels::new(campaign, model)?;
+    loop {
+        match levels.next(observer) {
+            Ok(None) => {}
+            Ok(Some(surrogate)) => return Ok(levels.ended(surrogate, None)),
+            Err(error) if is_interruption(&error) && observer.takes_what_there_is() => {
+                let best = levels.best.take().ok_or(error)?;
+                return Ok(levels.ended(best.surrogate, Some(EarlyEnd::Interrupted)));
+            }
+            Err(error) => return Err(error),
+        }
+        if let Some(end) = levels.early_end
+            && let Some(best) = levels.best.take()
+        {
+            return Ok(levels.ended(best.surrogate, Some(end)));
+        }
+    }
+}
+
+/// The levels so far.
+struct Levels<'a> {
+    study: &'a Study,
+    fitting: Fitting<'a>,
+    evaluations: Evaluations<'a>,
+    stopping: StoppingRule,
+    /// Sizes of the levels, the last of which is the next or current one.
+    sizes: Vec<u64>,
+    grouping: Vec<Output>,
+    previous: Option<Previous>,
+    spent: Spent,
+    best: Option<Best>,
+    /// Why no further level is worth its runs.
+    early_end: Option<EarlyEnd>,
+}
+
+/// The level with the smallest estimated error, the last of about equal ones.
+struct Best {
+    surrogate: Surrogate,
+    /// Infinite if it is not known.
+    error: f64,
+}
+
+impl<'a> Levels<'a> {
+    fn new(campaign: Campaign<'a>, model: Box<dyn Model>) -> Result<Self, BuildError> {
+        let study = campaign.study;
+        let fitting = Fitting::new(campaign)?;
+        Ok(Self {
+            study,
+            evaluations: Evaluations::new(campaign, model, matches!(fitting, Fitting::Ranked(_)))?,
+            fitting,
+            stopping: StoppingRule::new(study),
+            sizes: vec![study.design.initial as u64],
+            grouping: Vec::new(),
+            previous: None,
+            spent: Spent::default(),
+            best: None,
+            early_end: None,
+        })
+    }
+
+    /// One level. Its surrogate if it is the last one.
+    fn next(&mut self, observer: &dyn Observer) -> Result<Option<Surrogate>, BuildError> {
+        // Step 1: the design, and the model at its points.
+        let size = self.sizes.last().map_or(0, |&size| size as usize);
+        let start = Instant::now();
+        self.evaluations.grow_to(size, observer)?;
+        self.spent.runs += start.elapsed();
+        let start = Instant::now();
+        // Steps 2 and 3: what the components are, and their terms and coefficients.
+        let next = self.study.design.next_size(size).filter(|_| !self.study.fit.method.has_fixed_design());
+        let fitted = self.fitting.fit(&mut self.evaluations, next.is_some(), observer)?;
+        // Step 4: a design that is too small for the terms that matter grows.
+        let (level, fitted) = match (next, fitted) {
+            (Some(next), None) => {
+                self.sizes.push(next as u64);
+                return Ok(None);
+            }
+            (None, None) => (self.evaluations.by_rank()?, Vec::new()),
+            (_, Some(fitted)) => fitted,
+        };
+        let is_regrouped = groups(&level.outputs) != groups(&self.grouping);
+        self.grouping.clone_from(&level.outputs);
+        // Step 5: enough, or the next level.
+        let runs = self.evaluations.runs();
+        let mut surrogate = record::surrogate(self.study, &self.evaluations, &level, &fitted, &self.sizes);
+        let slowest = slowest(&level.outputs, &fitted);
+        let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
+        let is_last = next.is_none() || self.stopping.needs_no_judgement(&results);
+        let before = self.previous.map(|previous| Before { previous, is_regrouped });
+        let judgement = judge(&surrogate, &results, &level.values, runs, before, is_last, observer)?;
+        record::judged(&mut surrogate, &judgement, runs);
+        self.previous = judgement.previous;
+        self.spent.fits += start.elapsed();
+        observer.remark(&remark((size, self.study.fit.proportion_tolerance), slowest, &judgement, self.spent));
+        self.stopping.note(judgement.reducible_error.or(judgement.decision.proportion_error), size);
+        let Some(next) = next.filter(|_| !self.stopping.holds(&results, &judgement)) else {
+            return match self.fitting.refusal() {
+                Some(refusal) => Err(refusal),
+                None => Ok(Some(surrogate)),
+            };
+        };
+        self.keep_best(surrogate);
+        self.early_end = self.stopping.early_end(&results, self.fitting.work());
+        self.sizes.push(next as u64);
+        Ok(None)
+    }
+
+    /// Keeps a level that could be the result.
+    fn keep_best(&mut self, surrogate: Surrogate) {
+        let error = surrogate.decision.proportion_error.unwrap_or(f64::INFINITY);
+        let is_better = self.best.as_ref().is_none_or(|best| error <= MUCH_WORSE * best.error);
+        if is_better && self.fitting.refusal().is_none() {
+            self.best = Some(Best { surrogate, error });
+        }
+    }
+
+    /// The result: a level, with all runs that were spent.
+    fn ended(&self, mut surrogate: Surrogate, early_end: Option<EarlyEnd>) -> Built {
+        record::ended(&mut surrogate, &self.evaluations, early_end);
+        surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
+        Built { surrogate, rigid_body_modes: rigid_body_modes(self.evaluations.runs()) }
+    }
+}
+
+/// How eigenvalues become components.
+enum Fitting<'a> {
+    /// Modes have frequency ranks.
+    Ranked(RankedModes<'a>),
+    /// Eigenvalues are followed, and grouped by prediction.
+    Grouped(Box<GroupedEigenvalues<'a>>),
+}
+
+impl<'a> Fitting<'a> {
+    fn new(campaign: Campaign<'a>) -> Result<Self, BuildError> {
+        let study = campaign.study;
+        let fit = ComponentFit::new(study)?;
+        let is_grouped = study.spectrum.target == Target::Invariants && study.fit.method.fits_every_design();
+        Ok(match is_grouped {
+            true => Self::Grouped(Box::new(GroupedEigenvalues::new(study, fit))),
+            false => Self::Ranked(RankedModes::new(fit)),
+        })
+    }
+
+    /// What the fits have cost, where all of it is of use: the paper's method asks for larger designs itself.
+    fn work(&self) -> u64 {
+        match self {
+            Self::Ranked(_) => 0,
+            Self::Grouped(eigenvalues) => eigenvalues.work(),
+        }
+    }
+
+    /// Why the last level cannot be the last word.
+    fn refusal(&self) -> Option<BuildError> {
+        match self {
+            Self::Ranked(_) => None,
+            Self::Grouped(eigenvalues) => eigenvalues.refusal().cloned(),
+        }
+    }
+
+    fn fit(
+        &mut self,
+        evaluations: &mut Evaluations<'_>,
+        can_grow: bool,
+        observer: &dyn Observer,
+    ) -> Result<Option<(Level, Vec<ComponentResult>)>, BuildError> {
+        match self {
+            Self::Ranked(modes) => modes.fit(evaluations, can_grow, observer),
+            Self::Grouped(eigenvalues) => eigenvalues.fit(evaluations, can_grow, observer),
+        }
+    }
+}
