@@ -240,7 +240,8 @@ impl FitReport {
 
     /// The same, and what is known of the proportion.
     pub fn warnings_of(surrogate: &Surrogate) -> Vec<String> {
-        let mut warnings = Self::warnings_by_method(surrogate, &Self::of(surrogate));
+        let mut warnings: Vec<String> = super::coverage::warning(surrogate).into_iter().collect();
+        warnings.extend(Self::warnings_by_method(surrogate, &Self::of(surrogate)));
         let setting = |key: &str| surrogate.training.settings.iter().find(|setting| setting.key == key);
         let asked = setting("proportion_tolerance");
         let tolerance = asked.and_then(|setting| match setting.value {

@@ -2,6 +2,7 @@
 
 use super::build::FitReport;
 use super::confidence::Confidence;
+use super::coverage::Bounds;
 use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
@@ -65,6 +66,12 @@ pub struct EvalReport {
     /// How sure that is.
     #[serde(flatten)]
     pub confidence: Confidence,
+    /// Share of samples where the model did not answer, as far as its runs tell; absent if it answered everywhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unanswered_proportion: Option<f64>,
+    /// Between what the shares lie, whatever it would have answered there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bounds: Option<Bounds>,
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Statistics,
     /// What engineers read, per mode.
@@ -267,6 +274,8 @@ impl EvalReport {
         });
         let names: Vec<&str> = surrogate.inputs.names().collect();
         report.critical = found.critical.as_ref().map(|(input, values)| CriticalReport::new(names[*input], values));
+        report.unanswered_proportion = found.unanswered.map(|found| found.proportion());
+        report.bounds = found.unanswered.as_ref().map(Bounds::of);
         report.events = events(question, cell);
         (report.histograms, report.quantiles) = histograms(question, &answer.histograms);
         report.warnings = FitReport::warnings_of(surrogate);
@@ -339,6 +348,8 @@ impl EvalReport {
             band: None,
             standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
             confidence: Confidence::of_model(stable),
+            unanswered_proportion: None,
+            bounds: None,
             max_re: Statistics::of(&summary.max_re, 1.0),
             modes: modes(&labelled, stable.samples),
             real_eigenvalues: real_eigenvalues(&labelled, stable.samples),

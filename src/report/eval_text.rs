@@ -89,6 +89,14 @@ impl fmt::Display for EvalReport {
                 writeln!(f, "                         {range}   {:.0} %, from {samples} samples", 100.0 * level)?;
             }
         }
+        if let (Some(unanswered), Some(bounds)) = (self.unanswered_proportion, self.bounds) {
+            let [lower, upper] = [bounds.stable.lower, bounds.stable.upper].map(percent);
+            writeln!(
+                f,
+                "  unanswered             {}   the model failed there: {lower} to {upper} are stable",
+                percent(unanswered)
+            )?;
+        }
         if let Some(count) = self.rigid_body_modes.filter(|&count| count > 0) {
             writeln!(f, "  rigid body             {count} of the eigenvalues, zero and left out")?;
         }

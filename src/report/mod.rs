@@ -6,6 +6,7 @@ mod certify;
 mod charts;
 mod compare;
 mod confidence;
+mod coverage;
 mod eval;
 mod eval_text;
 mod inspect;

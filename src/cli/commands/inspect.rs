@@ -12,7 +12,8 @@ pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,
 
-    /// Exit with code 1 if this evaluator does not find the values of the self-test
+    /// Exit with code 1 if this evaluator does not find the values of the self-test, or the model did not answer in a
+    /// part of the domain
     #[arg(long)]
     pub check: bool,
 }
@@ -27,6 +28,10 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
             "the self-test is off by {:e}, more than its tolerance {:e}",
             report.self_test_difference, report.self_test_tolerance
         ));
+        return Ok(Ending::CheckFailed);
+    }
+    if options.check && artifact.surrogate.coverage.is_some() {
+        complain("the model did not answer in a part of the domain");
         return Ok(Ending::CheckFailed);
     }
     Ok(Ending::Done)

@@ -13,7 +13,7 @@ use crate::study::{Derivatives, DesignKind, Study};
 use nalgebra::Complex;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
-use pcc_evaluate::surrogate::Band;
+use pcc_evaluate::surrogate::{Band, Coverage};
 
 /// Fewer runs say nothing of how a component varies.
 const LEAST_RUNS: usize = 2;
@@ -207,6 +207,16 @@ impl<'a> Evaluations<'a> {
     /// Number of runs that failed.
     pub fn failed(&self) -> usize {
         self.design.len() - self.runs.len()
+    }
+
+    /// The runs, if some failed.
+    pub fn coverage(&self) -> Option<Coverage> {
+        let (points, mut answered, mut unanswered) = (self.points(), Vec::new(), Vec::new());
+        for i in 0..points.len() {
+            let runs = if self.answered.contains(&i) { &mut answered } else { &mut unanswered };
+            runs.push(points.point(i).to_vec());
+        }
+        (self.failed() > 0).then_some(Coverage { answered, unanswered })
     }
 
     /// All points of the design in standardized coordinates.

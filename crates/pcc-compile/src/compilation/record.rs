@@ -115,6 +115,8 @@ pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[R
 /// Takes down all runs that were spent, and why the build ended early, if it did.
 pub(super) fn ended(surrogate: &mut Surrogate, evaluations: &Evaluations<'_>, early_end: Option<EarlyEnd>) {
     surrogate.training.counts.direct_computations = (evaluations.runs().len() + evaluations.failed()) as u64;
+    surrogate.training.counts.failed = evaluations.failed() as u64;
+    surrogate.coverage = evaluations.coverage();
     let word = early_end.map(|end| setting("ended", SettingValue::Text(end.name().to_owned())));
     surrogate.training.settings.extend(word);
 }
@@ -145,6 +147,7 @@ fn new<'a>(
         training,
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
+        coverage: None,
         certificates: Vec::new(),
         verdict: VerdictBasis { margin: study.spectrum.margin, ..VerdictBasis::default() },
     }

@@ -35,7 +35,7 @@ impl Section {
 }
 
 /// Names of the sections of kind 1, 2, ….
-pub(super) const SECTION_NAMES: [&str; 10] = [
+pub(super) const SECTION_NAMES: [&str; 11] = [
     "meta",
     "inputs",
     "outputs",
@@ -46,6 +46,7 @@ pub(super) const SECTION_NAMES: [&str; 10] = [
     "self_test",
     "certificates",
     "verdict",
+    "coverage",
 ];
 
 /// Kind of the section of outputs, which has two versions.
@@ -56,6 +57,14 @@ pub(super) const CERTIFICATES: u16 = 9;
 
 /// Kind of the section of the verdict, which readers must understand where it is there.
 pub(super) const VERDICT: u16 = 10;
+
+/// Kind of the optional section of runs that failed.
+pub(super) const COVERAGE: u16 = 11;
+
+/// Whether readers need not understand a section.
+pub(super) fn is_optional(kind: u16) -> bool {
+    kind == CERTIFICATES || kind == COVERAGE
+}
 
 /// Sections 2 to 8 and 10, those that determine what a surrogate computes.
 fn content_sections(document: &Document) -> Result<Vec<Section>, WriteError> {
@@ -87,6 +96,9 @@ pub(super) fn sections(document: &Document) -> Result<Vec<Section>, WriteError> 
             AnyCertificates::V2(certificates) => Section { version: 2, ..section(CERTIFICATES, certificates)? },
         });
     }
+    if let Some(coverage) = &document.coverage {
+        sections.push(section(COVERAGE, coverage)?);
+    }
     sections.sort_by_key(|section| section.kind);
     Ok(sections)
 }
@@ -105,7 +117,7 @@ fn section<T: Serialize>(kind: u16, content: &T) -> Result<Section, WriteError> 
         section: SECTION_NAMES[usize::from(kind) - 1],
         message: error.to_string(),
     })?;
-    Ok(Section { kind, version: 1, required: kind != CERTIFICATES, body })
+    Ok(Section { kind, version: 1, required: !is_optional(kind), body })
 }
 
 /// Decodes the body of section `kind`; every byte must be used.

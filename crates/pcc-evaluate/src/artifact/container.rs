@@ -1,6 +1,6 @@
 //! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
 
-use super::binary::{CERTIFICATES, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, sections};
+use super::binary::{CERTIFICATES, COVERAGE, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections};
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
 use super::v2::{AnyCertificates, AnyOutputs};
@@ -89,6 +89,7 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
             _ => sections.optional(CERTIFICATES)?.map(AnyCertificates::V1),
         },
         verdict: sections.optional(VERDICT)?,
+        coverage: sections.optional(COVERAGE)?,
     };
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }
@@ -128,7 +129,7 @@ impl<'a> Sections<'a> {
             let body = usize::try_from(length).ok().and_then(|length| reader.take(length));
             let body = body.ok_or_else(|| damaged(&format!("section {kind} is cut off")))?;
             let is_known = usize::from(kind) <= SECTION_NAMES.len() && (1..=latest_version(kind)).contains(&version);
-            if is_known && (flags == 1) != (kind != CERTIFICATES) {
+            if is_known && (flags == 1) == is_optional(kind) {
                 return Err(damaged(&format!("section {kind} has the wrong flags")));
             }
             if is_known {

@@ -6,6 +6,7 @@ use super::{v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
+use crate::surrogate::Coverage;
 use crate::surrogate::{
     Band, Certificate, Counts, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest, Setting,
     SettingValue, StopReason, Surrogate, Training, VerdictBasis,
@@ -33,8 +34,10 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
     let expansions = expansions(document.expansions, inputs.dimension(), mesh.elements().len(), components)?;
     check_recurrences(&document.inputs, &expansions)?;
     let self_test = self_test(document.self_test, &inputs, components)?;
+    let coverage = coverage(document.coverage, inputs.dimension())?;
     Ok(Surrogate {
         provenance,
+        coverage,
         inputs,
         outputs,
         mesh,
@@ -324,6 +327,16 @@ fn verdict(stored: Option<v2::Verdict>) -> Result<VerdictBasis, ReadError> {
     };
     ensure("verdict", verdict != VerdictBasis::default(), || "it says nothing, and should not be there".to_owned())?;
     Ok(verdict)
+}
+
+fn coverage(stored: Option<v2::Coverage>, inputs: usize) -> Result<Option<Coverage>, ReadError> {
+    let Some(v2::Coverage { answered, unanswered }) = stored else { return Ok(None) };
+    let is_point = |point: &Vec<f64>| point.len() == inputs && point.iter().all(|coordinate| coordinate.abs() <= 1.0);
+    let is_shaped = [&answered, &unanswered].into_iter().all(|runs| !runs.is_empty() && runs.iter().all(is_point));
+    ensure("coverage", is_shaped, || {
+        format!("it needs runs of both kinds, with {inputs} coordinates in [-1, 1] each")
+    })?;
+    Ok(Some(Coverage { answered, unanswered }))
 }
 
 fn decision(decision: v1::Decision) -> Result<Decision, ReadError> {

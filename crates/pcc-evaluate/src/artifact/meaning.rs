@@ -6,7 +6,7 @@ use super::v2;
 
 /// The first section that holds a NaN or an infinity.
 pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
-    let sections: [(&str, Vec<f64>); 9] = [
+    let sections: [(&str, Vec<f64>); 10] = [
         ("inputs", document.inputs.inputs.iter().flat_map(input).collect()),
         ("outputs", document.outputs.components().flat_map(|component| [component.center, component.scale]).collect()),
         ("elements", elements(&document.elements)),
@@ -25,6 +25,7 @@ pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
                 .collect(),
         ),
         ("verdict", document.verdict.iter().flat_map(verdict).collect()),
+        ("coverage", document.coverage.iter().flat_map(coverage).collect()),
     ];
     sections.into_iter().find(|(_, numbers)| numbers.iter().any(|number| !number.is_finite())).map(|(name, _)| name)
 }
@@ -87,6 +88,10 @@ fn certificate(certificate: v2::Certificate) -> Vec<f64> {
 fn verdict(verdict: &v2::Verdict) -> Vec<f64> {
     let band = verdict.band.iter().flat_map(|band| [band.lower, band.upper]);
     [verdict.tolerance, verdict.margin.value].into_iter().chain(band).collect()
+}
+
+fn coverage(coverage: &v2::Coverage) -> Vec<f64> {
+    coverage.answered.iter().chain(&coverage.unanswered).flatten().copied().collect()
 }
 
 /// Fails with `message` unless `holds`.

@@ -37,6 +37,10 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
         },
         certificates: certificates(&surrogate.certificates),
         verdict: verdict(surrogate.verdict),
+        coverage: surrogate.coverage.as_ref().map(|coverage| v2::Coverage {
+            answered: coverage.answered.clone(),
+            unanswered: coverage.unanswered.clone(),
+        }),
     };
     if let Some(section) = not_finite(&document) {
         return Err(WriteError::NotFinite { section });

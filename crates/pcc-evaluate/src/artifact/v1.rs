@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::v2::{AnyCertificates, AnyOutputs, Verdict};
+use super::v2::{AnyCertificates, AnyOutputs, Coverage, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,6 +39,9 @@ pub struct Document {
     /// Section 10, absent if stability is judged by the sign of Re λ alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
+    /// Section 11, if the model did not answer everywhere. Since format 1.3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coverage: Option<Coverage>,
 }
 
 /// Version of the format.

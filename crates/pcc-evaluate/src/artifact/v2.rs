@@ -1,5 +1,6 @@
 //! Section 3 in version 2: outputs with eigenvalues that are real, or can become so. Section 9 in version 2:
 //! certificates of systems that can be marginal. Section 10: what else there is to know of the verdict on stability.
+//! Section 11: where the model did not answer.
 //!
 //! Files are written with version 1 of a section wherever that can say it. The rules of [`super::v1`] hold: a
 //! published body never changes.
@@ -73,6 +74,17 @@ pub struct Band {
     pub modes: u32,
     /// Number of its real eigenvalues that belong to no mode.
     pub reals: u32,
+}
+
+/// Section 11, optional and outside the content id: runs of the model, in standardized variables, where some failed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Coverage {
+    /// Points that answered.
+    pub answered: Vec<Vec<f64>>,
+    /// Points that failed.
+    pub unanswered: Vec<Vec<f64>>,
 }
 
 /// Certificates, in the version that says them.

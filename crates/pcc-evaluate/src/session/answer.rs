@@ -2,8 +2,8 @@
 
 use super::error::SessionError;
 use crate::evaluation::{
-    Answer, CriticalValues, EvalError, Question, Sampler, Sensitivities, Survey, Surveyed, critical_values_in,
-    sensitivities_in,
+    Answer, CriticalValues, EvalError, Question, Sampler, Sensitivities, Survey, Surveyed, Unanswered,
+    critical_values_in, sensitivities_in, unanswered_in,
 };
 use crate::foundation::{InstructionSet, Interrupted, Observer, is_interruption};
 use crate::shard_file::Part;
@@ -13,6 +13,9 @@ use std::time::Instant;
 /// Samples of the surrogate whose indices are estimated by pick-freeze: they cost r + 2 evaluations each, and their
 /// intervals are narrow enough.
 const SENSITIVITY_SAMPLES: u64 = 16_384;
+
+/// Samples at which it is looked up whether the model would have answered: each is compared with all runs.
+const COVERAGE_SAMPLES: u64 = 100_000;
 
 /// A surrogate, what was asked of it, and what it answers.
 #[derive(Debug, Clone)]
@@ -25,6 +28,8 @@ pub struct Evaluation<'s> {
     pub answer: Answer,
     /// Sensitivities of stability; none of sweeps, and none after an interruption.
     pub sensitivities: Option<Sensitivities>,
+    /// What rests on answers, if the model did not answer everywhere; none of sweeps, and none after an interruption.
+    pub unanswered: Option<Unanswered>,
     /// The critical values of an input, by its number, if asked for.
     pub critical: Option<(usize, CriticalValues)>,
     /// Whether this is all that was asked for; false after an interruption.
@@ -106,6 +111,7 @@ impl<'s> Session<'s> {
             question,
             is_complete: answer.is_complete,
             sensitivities: None,
+            unanswered: None,
             critical: None,
             merged_parts: None,
             elapsed_seconds,
@@ -118,6 +124,11 @@ impl<'s> Session<'s> {
             return Err(Interrupted.into());
         }
         let (region, seed) = (&survey.regions().at(0), question.seed);
+        if let Some(coverage) = surrogate.coverage.as_ref().filter(|_| evaluation.is_complete) {
+            let samples = (question.samples.min(COVERAGE_SAMPLES), seed);
+            evaluation.unanswered = in_time(unanswered_in(surrogate, coverage, region, samples, observer))?;
+            evaluation.is_complete = evaluation.unanswered.is_some();
+        }
         if evaluation.is_complete {
             let base = question.samples.min(SENSITIVITY_SAMPLES);
             evaluation.sensitivities = in_time(sensitivities_in(surrogate, region, base, seed, observer))?;

@@ -2,12 +2,14 @@
 
 mod agreement;
 mod analysis;
+mod coverage;
 mod evaluate;
 mod records;
 mod sobol;
 
 pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
 pub use analysis::FitQuality;
+pub use coverage::Coverage;
 pub use records::{
     Band, Certificate, Counts, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest, Setting,
     SettingValue, StopReason, Training, VerdictBasis,
@@ -45,6 +47,8 @@ pub struct Surrogate {
     pub certificates: Vec<Certificate>,
     /// What the verdict on stability rests on beside the sign of Re λ.
     pub verdict: VerdictBasis,
+    /// Where the model did not answer, if it did not everywhere.
+    pub coverage: Option<Coverage>,
 }
 
 impl Surrogate {

@@ -6,3 +6,4 @@ pub(super) mod critical;
 pub(super) mod crossings;
 pub(super) mod self_test;
 pub(super) mod sensitivity;
+pub(super) mod unanswered;
