@@ -133,7 +133,7 @@ fn run_program(python: &str, folder: &Path, jobs: usize, runs: u64) -> Result<Du
     let study = Study::from_toml_in(&study, folder)?;
     let (journal, _) = Journal::open(&folder.join(format!("{jobs}.journal")))?;
     let ledger = Ledger::recording(&study, journal);
-    let mut runner = Runner::new(Campaign { study: &study, ledger: Some(&ledger) })?;
+    let mut runner = Runner::new(Campaign { study: &study, ledger: Some(&ledger), counts_failures: false })?;
     let points = points(&study, runs);
     let start = Instant::now();
     runner.run(&points, &Silent)?;

@@ -1,6 +1,6 @@
 //! Options that several commands have, and how their values are read.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use pcc_compile::campaign::Recording;
 use std::path::PathBuf;
 
@@ -59,6 +59,15 @@ impl RecordingOptions {
             is_off: self.no_journal,
         }
     }
+}
+
+/// What becomes of model runs that fail, where surrogate and model are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Failures {
+    /// The first ends the command
+    Stop,
+    /// They count as disagreement both ways
+    Count,
 }
 
 /// Where the results of a sweep go beside the terminal.

@@ -1,6 +1,6 @@
 //! A verified bound, freshly made.
 
-use pcc_evaluate::foundation::count;
+use pcc_evaluate::foundation::{count, plural};
 use pcc_evaluate::probability::statistics::DiscordantCounts;
 use pcc_evaluate::surrogate::{Certificate, MarginalBounds, Surrogate};
 use serde::Serialize;
@@ -31,10 +31,14 @@ impl fmt::Display for CertificateReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let other = if self.same_problem { "" } else { "; of another problem than the surrogate's" };
         let Certificate { seed, samples, falsely_stable, falsely_unstable, level, lower, upper, .. } = self.certificate;
+        let failed = match self.certificate.failed {
+            0 => String::new(),
+            failed => format!(", {failed} failed"),
+        };
         write!(
             f,
             "{:.3} to {:.3} % stable at level {level}, {} model runs, seed {seed}, {falsely_stable} falsely stable, \
-             {falsely_unstable} falsely unstable{other}",
+             {falsely_unstable} falsely unstable{failed}{other}",
             100.0 * lower,
             100.0 * upper,
             count(samples),
@@ -62,9 +66,13 @@ impl CertifyReport {
     pub fn new(surrogate: &Surrogate, file: String, elapsed_seconds: f64) -> Self {
         let study = surrogate.provenance.study_name.clone();
         let contradicts_surrogate = surrogate.certificates.last().is_some_and(|new| {
-            let Certificate { samples, falsely_stable, falsely_unstable, level, .. } = *new;
-            let counts =
-                DiscordantCounts { samples, falsely_claimed: falsely_stable, falsely_denied: falsely_unstable };
+            let Certificate { samples, falsely_stable, falsely_unstable, failed, level, .. } = *new;
+            let counts = DiscordantCounts {
+                samples,
+                falsely_claimed: falsely_stable,
+                falsely_denied: falsely_unstable,
+                unknown: failed,
+            };
             let [lower, upper] = counts.difference(level);
             lower > 0.0 || upper < 0.0
         });
@@ -97,6 +105,13 @@ impl fmt::Display for CertifyReport {
             count(new.falsely_stable),
             count(new.falsely_unstable)
         )?;
+        if new.failed > 0 {
+            writeln!(
+                f,
+                "  failed                 {}, counted as disagreement both ways",
+                plural(new.failed as usize, "run")
+            )?;
+        }
         if !earlier.is_empty() {
             writeln!(f, "\nearlier certificates; choosing among them by their result would void the level:")?;
             earlier.iter().try_for_each(|certificate| writeln!(f, "  {certificate}"))?;

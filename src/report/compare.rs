@@ -3,7 +3,7 @@
 use super::survey::LEVEL;
 use super::table::{Align, Table, significant};
 use pcc_compile::reference::Comparison;
-use pcc_evaluate::foundation::count;
+use pcc_evaluate::foundation::{count, plural};
 use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
@@ -49,6 +49,8 @@ pub struct CompareReport {
     pub falsely_marginal: u64,
     /// Points that the surrogate calls unstable and the model does not.
     pub falsely_unstable: u64,
+    /// Points at which the model failed, counted as disagreement.
+    pub failed: u64,
     /// Number of eigenvalues of the model that are rigid-body motion, and left out.
     pub rigid_body_modes: usize,
     /// Largest error of the mean of Re λ among the modes: the paper's mean error.
@@ -117,6 +119,7 @@ impl CompareReport {
             falsely_stable: comparison.falsely_stable(),
             falsely_marginal: comparison.falsely_marginal(),
             falsely_unstable: comparison.falsely_unstable(),
+            failed: comparison.verdicts.failed(),
             rigid_body_modes: comparison.rigid_body_modes,
             largest_mean_error_percent: largest(|component| component.mean_error_percent),
             largest_variance_error_percent: largest(|component| component.variance_error_percent),
@@ -183,6 +186,13 @@ impl fmt::Display for CompareReport {
             },
             count(self.falsely_unstable)
         )?;
+        if self.failed > 0 {
+            writeln!(
+                f,
+                "  failed                 {}, counted as disagreement; shares are of the others",
+                plural(self.failed as usize, "model run")
+            )?;
+        }
         writeln!(
             f,
             "  largest error, Re λ    mean {} %, variance {} %\n",

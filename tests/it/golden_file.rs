@@ -211,6 +211,11 @@ fn verdict(b: &mut B) -> Value {
     ])
 }
 
+fn coverage(b: &mut B) -> Value {
+    let runs = |b: &mut B| b.list(|b| b.list(B::float));
+    b.fields(&[("answered", &runs), ("unanswered", &runs)])
+}
+
 /// The document that a file holds, read by hand.
 fn document(file: &[u8]) -> Value {
     let mut b = Bytes { bytes: file.to_vec(), at: 0 };
@@ -218,7 +223,7 @@ fn document(file: &[u8]) -> Value {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [Field; 9] = [
+    let sections: [Field; 10] = [
         ("meta", &meta),
         ("inputs", &inputs),
         ("outputs", &outputs),
@@ -228,14 +233,16 @@ fn document(file: &[u8]) -> Value {
         ("decision", &decision),
         ("self_test", &self_test),
         ("verdict", &verdict),
+        ("coverage", &coverage),
     ];
-    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10].into_iter().zip(sections) {
-        if kind == 10 && b.at == file.len() - 4 {
-            break;
+    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10, 11].into_iter().zip(sections) {
+        let is_next = b.at < file.len() - 4 && u16::from_le_bytes([file[b.at], file[b.at + 1]]) == kind;
+        if kind > 9 && !is_next {
+            continue;
         }
         let header = [b.u16(), b.u16(), b.u16(), b.u16()];
         let version = header[1];
-        assert_eq!(header, [kind, version, 1, 0], "header of {name}");
+        assert_eq!(header, [kind, version, u16::from(kind != 11), 0], "header of {name}");
         let length = b.u64() as usize;
         let before = b.at;
         document[name] = match (name, version) {
@@ -276,6 +283,16 @@ fn it_reads_what_the_verdict_rests_on() {
     let found = document(&encode(&surrogate, Format::Binary).unwrap());
     assert_eq!(found, json);
     assert_eq!(found["verdict"]["rigid_body_modes"], 1);
+}
+
+#[test]
+fn it_reads_where_the_model_did_not_answer() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::coverage::built(1);
+    let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(&surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    assert_eq!(found["coverage"]["unanswered"][0].as_array().unwrap().len(), 2);
 }
 
 #[test]

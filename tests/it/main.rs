@@ -7,6 +7,7 @@ mod closed_groups;
 mod clusters;
 mod clutch_reference;
 mod command_line;
+mod coverage;
 mod derivatives;
 mod determinism;
 mod endings;

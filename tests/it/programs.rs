@@ -541,3 +541,31 @@ fn builds_from_a_journal_cut_anywhere_have_the_same_bytes() {
         assert_eq!(Journal::read(&path("cut.journal")).unwrap().records.len(), runs);
     }
 }
+
+/// With failures in a part of the domain, the model's word is asked for all the same, at a price.
+#[test]
+fn failures_count_as_disagreement_both_ways_if_asked_for() {
+    let folder = folder(&STUDY.replace("jobs = 8", "jobs = 8\non_failure = \"skip\""));
+    let fails = r#"
+        awk '
+            { gsub(/[{}" ]/, ""); n = split($0, parts, ","); for (i = 1; i <= n; i++) { split(parts[i], pair, ":"); value[pair[1]] = pair[2] } }
+            END { exit value["mu"] > 0.4 ? 1 : 0 }' params.json || exit 3
+    "#;
+    fs::write(folder.path().join("before.sh"), fails).unwrap();
+    let said = output(folder.path(), &["build", "study.toml"]);
+    assert!(said.contains("did not answer in"), "{said}");
+    let certify = ["certify", "program.pcc", "--study", "study.toml", "-m", "40"];
+    let ends_at_the_first = |arguments: &[&str]| {
+        let ended = pcc(folder.path(), arguments);
+        assert!(ended.status.code() == Some(2) && stderr(&ended).contains("failed"), "{}", stderr(&ended));
+    };
+    ends_at_the_first(&certify);
+    let said = output(folder.path(), &[&certify[..], &["--failures", "count", "--seed", "2"]].concat());
+    assert!(said.contains("counted as disagreement both ways"), "{said}");
+    let compare = ["compare", "program.pcc", "--study", "study.toml", "-n", "40"];
+    ends_at_the_first(&compare);
+    let said = output(folder.path(), &[&compare[..], &["--failures", "count"]].concat());
+    assert!(said.contains("counted as disagreement") && !said.contains("misclassified          0 %"), "{said}");
+    let checked = pcc(folder.path(), &["inspect", "program.pcc", "--check"]);
+    assert_eq!(checked.status.code(), Some(1), "{}", stderr(&checked));
+}

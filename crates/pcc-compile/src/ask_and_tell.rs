@@ -167,7 +167,7 @@ pub fn tell(
 /// The build as far as it goes, and what it failed with, other than a want of answers.
 fn step(study: &Study, contents: &Contents, observer: &dyn Observer) -> (Step, Option<BuildError>) {
     let ledger = Ledger::blank(study).knowing(contents).asking();
-    let built = build(Campaign { study, ledger: Some(&ledger) }, observer);
+    let built = build(Campaign { study, ledger: Some(&ledger), counts_failures: false }, observer);
     let step = Step { asked: ledger.asked(), is_complete: built.is_ok() };
     match built {
         Ok(_) | Err(BuildError::Run(RunError::Unanswered { .. })) => (step, None),

@@ -2,11 +2,12 @@
 
 use crate::cli::inputs::{read_study, read_surrogate};
 use crate::cli::overwrite::{Output, claim};
-use crate::cli::shared_options::{RecordingOptions, sample_count, seed};
+use crate::cli::shared_options::{Failures, RecordingOptions, sample_count, seed};
 use crate::cli::{Context, Ending, about};
 use crate::report::CertifyReport;
 use anyhow::{Context as _, bail};
 use clap::Args;
+use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::certify_with_model;
 use pcc_evaluate::artifact::{Format, encode};
 use pcc_evaluate::foundation::save;
@@ -46,6 +47,10 @@ pub(in crate::cli) struct Options {
     #[arg(long)]
     pub force: bool,
 
+    /// What becomes of model runs that fail
+    #[arg(long, value_enum, default_value_t = Failures::Stop)]
+    pub failures: Failures,
+
     #[command(flatten)]
     pub recording: RecordingOptions,
 }
@@ -75,7 +80,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let format = options.output.as_ref().map_or(artifact.format, |path| Format::of_path(path));
     claim(output, Output::Surrogate, &[])?;
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
-    let campaign = books.campaign(&study);
+    let campaign = Campaign { counts_failures: options.failures == Failures::Count, ..books.campaign(&study) };
     let start = Instant::now();
     let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))

@@ -1,10 +1,11 @@
 //! `pcc compare`
 
 use crate::cli::inputs::{read_study, read_surrogate};
-use crate::cli::shared_options::{RecordingOptions, percentage, sample_count, seed};
+use crate::cli::shared_options::{Failures, RecordingOptions, percentage, sample_count, seed};
 use crate::cli::{Context, Ending, complain, about};
 use crate::report::{CompareReport, significant};
 use clap::Args;
+use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::compare_with_model;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -34,6 +35,10 @@ pub(in crate::cli) struct Options {
     #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
     pub max_error: Option<f64>,
 
+    /// What becomes of model runs that fail
+    #[arg(long, value_enum, default_value_t = Failures::Stop)]
+    pub failures: Failures,
+
     #[command(flatten)]
     pub recording: RecordingOptions,
 }
@@ -42,7 +47,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let study = read_study(&options.study)?;
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
-    let campaign = books.campaign(&study);
+    let campaign = Campaign { counts_failures: options.failures == Failures::Count, ..books.campaign(&study) };
     let start = Instant::now();
     let comparison = compare_with_model(&surrogate, campaign, options.samples, options.seed, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))

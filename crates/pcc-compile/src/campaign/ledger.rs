@@ -258,10 +258,12 @@ pub struct Campaign<'a> {
     pub study: &'a Study,
     /// The books.
     pub ledger: Option<&'a Ledger>,
+    /// Whether comparisons and certificates count runs that fail, as disagreement, instead of ending at the first.
+    pub counts_failures: bool,
 }
 
 impl<'a> From<&'a Study> for Campaign<'a> {
     fn from(study: &'a Study) -> Self {
-        Self { study, ledger: None }
+        Self { study, ledger: None, counts_failures: false }
     }
 }

@@ -255,7 +255,7 @@ impl Books {
 
     /// A campaign of `study` with these books.
     pub fn campaign<'b>(&'b self, study: &'b Study) -> Campaign<'b> {
-        Campaign { study, ledger: Some(&self.ledger) }
+        Campaign { study, ledger: Some(&self.ledger), counts_failures: false }
     }
 
     /// The journal, if it stays when the command ends.

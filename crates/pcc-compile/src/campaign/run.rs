@@ -125,7 +125,7 @@ impl<'a> Runner<'a> {
 
     /// Runs `model` in place of the study's.
     pub fn of(campaign: impl Into<Campaign<'a>>, model: Box<dyn Model>) -> Self {
-        let Campaign { study, ledger } = campaign.into();
+        let Campaign { study, ledger, .. } = campaign.into();
         Self {
             study,
             ledger,
@@ -188,6 +188,15 @@ impl<'a> Runner<'a> {
     /// As [`Runner::run`].
     pub fn run_skipping(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Option<Run>>, RunError> {
         self.run_or_recall(points, self.study.model.skips_failures(), observer)
+    }
+
+    /// The same, whatever the study says.
+    ///
+    /// # Errors
+    ///
+    /// As [`Runner::run`], but for points that failed.
+    pub fn run_counting(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<Vec<Option<Run>>, RunError> {
+        self.run_or_recall(points, true, observer)
     }
 
     /// Runs the model, or recalls what the ledger knows of it.

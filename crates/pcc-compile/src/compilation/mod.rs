@@ -83,9 +83,9 @@ struct Built {
 }
 
 fn built(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Built, BuildError> {
-    let Campaign { study, ledger } = campaign;
+    let Campaign { study, ledger, counts_failures } = campaign;
     let blank = Ledger::blank(study);
-    let campaign = Campaign { study, ledger: Some(ledger.unwrap_or(&blank)) };
+    let campaign = Campaign { study, ledger: Some(ledger.unwrap_or(&blank)), counts_failures };
     match study.fit.method.is_quadrature() {
         true => elements::build(campaign, model, observer),
         false => levels::build(campaign, model, observer),

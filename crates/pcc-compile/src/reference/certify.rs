@@ -42,11 +42,12 @@ pub fn certify_with_model<'a>(
     }
     let plan = Plan::new(surrogate);
     let mut verdicts = Verdicts::default();
-    for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found| {
+    let failed = for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found| {
         let block = surrogate_block(surrogate, &plan, points)?;
         verdicts.classify_strictly(found.iter().map(|run| run.spectrum.top().excess), &block);
         Ok(())
     })?;
+    verdicts.count_failures(failed);
     let summary = monte_carlo(surrogate, SURROGATE_SAMPLES, seed, observer).map_err(|error| match error {
         EvalError::Interrupted(interrupted) => ReferenceError::Run(interrupted.into()),
         other => ReferenceError::Surrogate(other),
@@ -70,6 +71,7 @@ pub fn certify_with_model<'a>(
         scheme: SCHEME.to_owned(),
         falsely_stable: counts.falsely_claimed,
         falsely_unstable: counts.falsely_denied,
+        failed,
         level,
         lower,
         upper,

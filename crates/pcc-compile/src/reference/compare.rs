@@ -56,6 +56,8 @@ impl ComponentError {
 pub struct Verdicts {
     /// Points by what the surrogate says, stable, marginal or unstable, and in each by what the model says.
     counts: [[u64; 3]; 3],
+    /// Points at which the model failed: disagreement, whatever it is.
+    failed: u64,
 }
 
 /// What the model says of a point.
@@ -106,6 +108,16 @@ impl Verdicts {
         model.zip(&block.excess).for_each(|(model, &excess)| self.add_strictly(excess, model));
     }
 
+    /// Counts points at which the model failed.
+    pub(super) fn count_failures(&mut self, failed: u64) {
+        self.failed += failed;
+    }
+
+    /// Points at which the model failed.
+    pub fn failed(&self) -> u64 {
+        self.failed
+    }
+
     fn surrogate(&self, class: usize) -> u64 {
         self.counts[class].iter().sum()
     }
@@ -118,9 +130,10 @@ impl Verdicts {
     fn discordant(&self, class: usize) -> DiscordantCounts {
         let both = self.counts[class][class];
         DiscordantCounts {
-            samples: self.counts.iter().flatten().sum(),
+            samples: self.counts.iter().flatten().sum::<u64>() + self.failed,
             falsely_claimed: self.surrogate(class) - both,
             falsely_denied: self.model(class) - both,
+            unknown: self.failed,
         }
     }
 
@@ -180,18 +193,24 @@ impl Comparison {
     }
 
     fn share(&self, hits: u64) -> f64 {
-        Proportion { hits, samples: self.samples }.value()
+        Proportion { hits, samples: self.samples - self.verdicts.failed }.value()
     }
 
-    /// 100 |difference of the proportions|/proportion of the model; `None` if the model is never stable and the
-    /// surrogate sometimes is.
+    /// 100 |difference of the proportions|/proportion of the model, where points at which the model failed are as far
+    /// off as they can be; `None` if the model is never stable and the surrogate sometimes is.
     pub fn relative_error_percent(&self) -> Option<f64> {
-        relative_error_percent(self.verdicts.surrogate(0) as f64, self.verdicts.model(0) as f64)
+        self.relative_error_of(0)
     }
 
     /// The same of unstable points.
     pub fn relative_error_of_unstable_percent(&self) -> Option<f64> {
-        relative_error_percent(self.verdicts.surrogate(2) as f64, self.verdicts.model(2) as f64)
+        self.relative_error_of(2)
+    }
+
+    fn relative_error_of(&self, class: usize) -> Option<f64> {
+        let (found, truth) = (self.verdicts.surrogate(class), self.verdicts.model(class));
+        let off = found.abs_diff(truth) + self.verdicts.failed;
+        relative_error_percent((truth + off) as f64, truth as f64)
     }
 
     /// Points that the surrogate calls stable and the model does not.
@@ -209,9 +228,10 @@ impl Comparison {
         self.verdicts.of_unstable().falsely_claimed
     }
 
-    /// Share of points on whose stability the two disagree, in percent.
+    /// Share of points on whose stability the two disagree, or the model failed, in percent.
     pub fn misclassified_percent(&self) -> f64 {
-        let all = self.falsely_stable() + self.falsely_marginal() + self.falsely_unstable();
+        let judged = self.falsely_stable() + self.falsely_marginal() + self.falsely_unstable();
+        let all = judged + self.verdicts.failed;
         100.0 * all as f64 / self.samples as f64
     }
 }
@@ -240,7 +260,7 @@ pub fn compare_with_model<'a>(
     let plan = Plan::new(surrogate);
     let mut comparison = Comparison::new(samples);
     let matching = Matching::new(surrogate, study.spectrum.target);
-    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs| {
+    let failed = for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs| {
         let block = surrogate_block(surrogate, &plan, points)?;
         comparison.classify(runs.iter().map(|run| Judged::of(&run.spectrum)), &block);
         comparison.rigid_body_modes = runs.first().map_or(0, |run| run.spectrum.rigid_body_modes());
@@ -248,6 +268,7 @@ pub fn compare_with_model<'a>(
         comparison.merge(errors(surrogate, &matching, &spectra, &block));
         Ok(())
     })?;
+    comparison.verdicts.count_failures(failed);
     Ok(comparison)
 }
 

@@ -380,6 +380,7 @@ fn certificates(section: Option<v2::AnyCertificates>) -> Result<Vec<Certificate>
 fn certificate(certificate: v2::Certificate) -> Result<Certificate, ReadError> {
     let v2::Certificate { level, lower, upper, samples, .. } = certificate;
     let discordant = certificate.falsely_stable.checked_add(certificate.falsely_unstable);
+    let discordant = discordant.and_then(|discordant| discordant.checked_add(certificate.failed));
     let is_bound = |lower: f64, upper: f64| 0.0 <= lower && lower <= upper && upper <= 1.0;
     let are_bounds = |bounds: &v2::MarginalBounds| {
         is_bound(bounds.marginal_lower, bounds.marginal_upper)
@@ -399,6 +400,7 @@ fn certificate(certificate: v2::Certificate) -> Result<Certificate, ReadError> {
         scheme: certificate.scheme,
         falsely_stable: certificate.falsely_stable,
         falsely_unstable: certificate.falsely_unstable,
+        failed: certificate.failed,
         level,
         lower,
         upper,

@@ -432,6 +432,7 @@ fn certificates_survive_and_stay_outside_the_content_id() {
         scheme: "simple".to_owned(),
         falsely_stable: 2,
         falsely_unstable: 1,
+        failed: 0,
         level: 0.95,
         lower: 0.18,
         upper: 0.22,

@@ -270,6 +270,7 @@ fn certificates(certificates: &[Certificate]) -> Option<v2::AnyCertificates> {
         upper: certificate.upper,
         problem_hash: certificate.problem_hash.clone(),
         marginal: certificate.marginal.map(bounds),
+        failed: certificate.failed,
     };
     (!certificates.is_empty()).then(|| v2::AnyCertificates::of(certificates.iter().map(certificate).collect()))
 }

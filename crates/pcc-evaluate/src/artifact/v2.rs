@@ -134,6 +134,9 @@ pub struct Certificate {
     pub problem_hash: String,
     /// What else it bounds.
     pub marginal: Option<MarginalBounds>,
+    /// Points at which the model failed.
+    #[serde(default)]
+    pub failed: u64,
 }
 
 /// Bounds of the marginal and of the unstable share.
@@ -185,6 +188,7 @@ impl From<v1::Certificate> for Certificate {
             upper,
             problem_hash,
             marginal: None,
+            failed: 0,
         }
     }
 }
@@ -192,7 +196,7 @@ impl From<v1::Certificate> for Certificate {
 impl AnyCertificates {
     /// Certificates in the lowest version that says them.
     pub(super) fn of(certificates: Vec<Certificate>) -> Self {
-        if certificates.iter().any(|certificate| certificate.marginal.is_some()) {
+        if certificates.iter().any(|certificate| certificate.marginal.is_some() || certificate.failed > 0) {
             return Self::V2(Certificates { certificates });
         }
         let first_version = |certificate: Certificate| v1::Certificate {

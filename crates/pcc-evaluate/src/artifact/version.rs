@@ -27,7 +27,8 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     };
     let needs_2 = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
-    let bounds_all = surrogate.certificates.iter().any(|certificate| certificate.marginal.is_some());
+    let bounds_all =
+        surrogate.certificates.iter().any(|certificate| certificate.marginal.is_some() || certificate.failed > 0);
     let has_floor = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
     let has_verdict = surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default();
     match has_verdict || bounds_all || has_floor || surrogate.coverage.is_some() {

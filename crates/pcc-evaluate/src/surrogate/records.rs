@@ -295,6 +295,8 @@ pub struct Certificate {
     pub falsely_stable: u64,
     /// Points that the model calls stable and the surrogate does not.
     pub falsely_unstable: u64,
+    /// Points at which the model failed; the bound holds whatever it would have answered there.
+    pub failed: u64,
     /// Confidence level.
     pub level: f64,
     /// Lower end of the bound on the stability proportion.

@@ -35,7 +35,7 @@ const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 /// ```
 /// use pcc_evaluate::probability::statistics::{DiscordantCounts, Proportion};
 /// let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-/// let counts = DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 0 };
+/// let counts = DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 0, unknown: 0 };
 /// let bound = counts.bound(surrogate, 0.95);
 /// assert!(bound.lower > 0.36 && bound.upper < 0.42);
 /// ```
@@ -47,6 +47,8 @@ pub struct DiscordantCounts {
     pub falsely_claimed: u64,
     /// Number of points that the model counts and the surrogate does not.
     pub falsely_denied: u64,
+    /// Number of points at which the model failed: any of the two, or none.
+    pub unknown: u64,
 }
 
 impl DiscordantCounts {
@@ -65,18 +67,22 @@ impl DiscordantCounts {
     /// Each interval misses its probability with at most its error, so by Bonferroni's inequality one or more of them
     /// miss with at most 0.02 α + 2 · 0.49 α = α, however they depend on each other: both discordant counts come from
     /// the same points. When none misses, p = p_s − P(falsely claimed) + P(falsely denied) lies between the two sides.
+    /// Points at which the model failed count for a⁺ and b⁺ and not for a⁻ and b⁻: whatever it would have answered, the
+    /// bound holds.
     ///
     /// Without fresh points the bound is \[0, 1\].
     pub fn bound(self, surrogate: Proportion, level: f64) -> Interval {
         let alpha = 1.0 - level;
         let discordant =
             |hits| Proportion { hits, samples: self.samples }.clopper_pearson(1.0 - ERROR_SHARE_OF_DISCORDANCE * alpha);
-        let falsely_claimed = discordant(self.falsely_claimed);
-        let falsely_denied = discordant(self.falsely_denied);
+        let [claimed, denied] = [self.falsely_claimed, self.falsely_denied].map(|known| {
+            let most = known + self.unknown;
+            [discordant(known).lower, discordant(most).upper]
+        });
         let stable = surrogate.clopper_pearson(1.0 - ERROR_SHARE_OF_SURROGATE * alpha);
         Interval {
-            lower: (stable.lower - falsely_claimed.upper + falsely_denied.lower).clamp(0.0, 1.0),
-            upper: (stable.upper - falsely_claimed.lower + falsely_denied.upper).clamp(0.0, 1.0),
+            lower: (stable.lower - claimed[1] + denied[0]).clamp(0.0, 1.0),
+            upper: (stable.upper - claimed[0] + denied[1]).clamp(0.0, 1.0),
             level,
         }
     }
@@ -106,6 +112,20 @@ mod tests {
     }
 
     #[test]
+    fn failures_widen_the_bound_to_either_side() {
+        let surrogate = Proportion { hits: 600_000, samples: 1_000_000 };
+        let counts = |unknown| DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 3, unknown };
+        let [all_answered, some_failed] = [counts(0), counts(60)].map(|counts| counts.bound(surrogate, LEVEL));
+        assert!(some_failed.lower < all_answered.lower - 0.2 && some_failed.upper > all_answered.upper + 0.2);
+        // Whatever the failed points are.
+        for (claimed, denied) in [(62, 3), (2, 63), (32, 33)] {
+            let known = DiscordantCounts { samples: 300, falsely_claimed: claimed, falsely_denied: denied, unknown: 0 };
+            let bound = known.bound(surrogate, LEVEL);
+            assert!(some_failed.lower <= bound.lower && bound.upper <= some_failed.upper);
+        }
+    }
+
+    #[test]
     fn error_shares_sum_to_one() {
         assert_eq!(2.0 * ERROR_SHARE_OF_DISCORDANCE + ERROR_SHARE_OF_SURROGATE, 1.0);
     }
@@ -115,7 +135,7 @@ mod tests {
         let mut evaluation = Stream::new(7, Purpose::Evaluation, repeat);
         let hits = (0..surrogate_samples).filter(|_| evaluation.next_unit() < truth.surrogate()).count() as u64;
         let mut certification = Stream::new(7, Purpose::Certification, repeat);
-        let mut seen = DiscordantCounts { samples: fresh, falsely_claimed: 0, falsely_denied: 0 };
+        let mut seen = DiscordantCounts { samples: fresh, falsely_claimed: 0, falsely_denied: 0, unknown: 0 };
         for _ in 0..fresh {
             let unit = certification.next_unit();
             if unit < truth.falsely_claimed {
@@ -155,7 +175,8 @@ mod tests {
     #[test]
     fn no_disagreement_leaves_the_width_of_what_may_have_been_missed() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 100, falsely_claimed: 0, falsely_denied: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 100, falsely_claimed: 0, falsely_denied: 0, unknown: 0 }
+            .bound(surrogate, LEVEL);
         // One-sided 0.245 α of 100 points without a hit: 1 − (0.245 · 0.05)^(1/100).
         let missed = 1.0 - (0.245f64 * 0.05).powf(0.01);
         let own = surrogate.clopper_pearson(0.999);
@@ -166,18 +187,19 @@ mod tests {
     #[test]
     fn disagreement_shifts_the_bound_to_the_side_of_the_model() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let optimistic =
-            DiscordantCounts { samples: 500, falsely_claimed: 60, falsely_denied: 0 }.bound(surrogate, LEVEL);
+        let optimistic = DiscordantCounts { samples: 500, falsely_claimed: 60, falsely_denied: 0, unknown: 0 }
+            .bound(surrogate, LEVEL);
         assert!(optimistic.lower < 0.28 && 0.28 < optimistic.upper && optimistic.upper < 0.4, "{optimistic:?}");
-        let pessimistic =
-            DiscordantCounts { samples: 500, falsely_claimed: 0, falsely_denied: 60 }.bound(surrogate, LEVEL);
+        let pessimistic = DiscordantCounts { samples: 500, falsely_claimed: 0, falsely_denied: 60, unknown: 0 }
+            .bound(surrogate, LEVEL);
         assert!(pessimistic.upper > 0.52 && 0.52 > pessimistic.lower && pessimistic.lower > 0.4, "{pessimistic:?}");
     }
 
     #[test]
     fn a_perfect_surrogate_says_more_than_the_model_runs_alone() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 300, falsely_claimed: 0, falsely_denied: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts { samples: 300, falsely_claimed: 0, falsely_denied: 0, unknown: 0 }
+            .bound(surrogate, LEVEL);
         let alone = Proportion { hits: 120, samples: 300 }.clopper_pearson(LEVEL);
         assert!(width(bound) < 0.4 * width(alone), "{bound:?}, {alone:?}");
     }
@@ -186,7 +208,8 @@ mod tests {
     fn bound_stays_within_zero_and_one() {
         for hits in [0, 1_000_000] {
             let surrogate = Proportion { hits, samples: 1_000_000 };
-            let bound = DiscordantCounts { samples: 50, falsely_claimed: 5, falsely_denied: 5 }.bound(surrogate, LEVEL);
+            let bound = DiscordantCounts { samples: 50, falsely_claimed: 5, falsely_denied: 5, unknown: 0 }
+                .bound(surrogate, LEVEL);
             assert!(0.0 <= bound.lower && bound.lower <= bound.upper && bound.upper <= 1.0, "{bound:?}");
         }
     }
@@ -194,7 +217,8 @@ mod tests {
     #[test]
     fn nothing_is_known_without_fresh_points() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 0, falsely_claimed: 0, falsely_denied: 0 }.bound(surrogate, LEVEL);
+        let bound =
+            DiscordantCounts { samples: 0, falsely_claimed: 0, falsely_denied: 0, unknown: 0 }.bound(surrogate, LEVEL);
         assert_eq!((bound.lower, bound.upper), (0.0, 1.0));
     }
 }
