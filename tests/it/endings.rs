@@ -209,3 +209,22 @@ fn a_stopped_build_gives_its_best_level_if_asked_to() {
     assert!(warnings.contains("because it was stopped"), "{warnings}");
     assert!(surrogate.self_test.points.len() == 16 && surrogate.decision.proportion_error.is_some());
 }
+
+/// An undamped belt whose answers carry noise: its growth rates are noise, and known to be if the study says so.
+#[test]
+fn noise_that_a_study_states_tells_constants_and_zeros() {
+    let undamped = BELT.replace("    C = [[2, 0], [0, 2]]\n", "").replace("- mu", "+ mu");
+    let study = without_derivatives(&format!("{undamped}[spectrum]\nnoise = 1e-6\n"), 1);
+    let surrogate = built(&study, Noise::Relative(1e-7));
+    assert!(surrogate.is_undamped());
+    let summary = monte_carlo(&surrogate, SAMPLES, 1, &Silent).unwrap();
+    assert_eq!(summary.marginal(), SAMPLES);
+    let damped = without_derivatives(&format!("{BELT}[spectrum]\nnoise = 1e-6\n"), 1);
+    let ([exact, noisy], [_, runs], surrogate) = compared(&damped, Noise::Relative(1e-7));
+    assert!(runs <= 36 && (exact - noisy).abs() <= 5e-4, "{runs} runs: {noisy}, not {exact}");
+    assert_eq!(surrogate.expansions[0].stop, StopReason::Constant);
+    for wrong in ["-1e-9", "0.1", "nan"] {
+        let refused = Study::from_toml(&format!("{BELT}[spectrum]\nnoise = {wrong}\n")).unwrap_err();
+        assert!(refused.to_string().contains("spectrum.noise"), "{refused}");
+    }
+}

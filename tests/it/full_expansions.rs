@@ -51,6 +51,7 @@ fn quadrature_equals_an_independent_projection() {
     for inputs in 1..=4 {
         let invariants = Study {
             spectrum: pcc_compile::study::SpectrumSettings {
+                noise: 0.0,
                 modes: Modes::Ranks(vec![3, 4]),
                 ..study(inputs, "", "").spectrum.clone()
             },

@@ -287,7 +287,8 @@ impl<'a> Runner<'a> {
 
     fn spectrum(&self, eigenvalues: &[Complex<f64>], accuracies: &[Accuracy]) -> Result<Spectrum, SpectrumError> {
         let rigid_body_modes = self.structure.rigid_body_modes(eigenvalues, self.study, &*self.model)?;
-        Spectrum::with_zeros(eigenvalues, accuracies, rigid_body_modes, self.study.spectrum.margin)
+        let settings = &self.study.spectrum;
+        Spectrum::with_zeros(eigenvalues, accuracies, rigid_body_modes, settings.margin)?.with_noise(settings.noise)
     }
 
     /// The model at points that the ledger does not know.

@@ -206,7 +206,7 @@ impl<'a> GroupFits<'a> {
         }
         Ok(GroupFit {
             gradients,
-            resolutions: finer(resolutions(&output, followed.runs), group, &eigenvalues, followed),
+            resolutions: self.resolutions(&output, group, &eigenvalues, followed),
             output,
             eigenvalues,
             values,
@@ -214,6 +214,24 @@ impl<'a> GroupFits<'a> {
             care: Care::Trial,
             score: f64::INFINITY,
         })
+    }
+
+    /// Differences of each component up to this size are rounding, or the noise that the study says.
+    fn resolutions(
+        &self,
+        output: &Output,
+        group: &Group,
+        eigenvalues: &[Vec<Complex<f64>>],
+        followed: &Followed<'_>,
+    ) -> Vec<f64> {
+        let rule = resolutions(output, followed.runs);
+        match self.study.spectrum.noise > 0.0 {
+            true => {
+                let known = largest_errors(group, eigenvalues, followed);
+                rule.into_iter().zip(known).map(|(rule, known)| rule.max(known)).collect()
+            }
+            false => finer(rule, group, eigenvalues, followed),
+        }
     }
 
     /// The derivatives of each component in standardized variables. Runs in which the group cannot be separated from
@@ -245,12 +263,17 @@ fn finer(resolutions: Vec<f64>, group: &Group, eigenvalues: &[Vec<Complex<f64>>]
     if !(0..followed.runs.len()).all(is_known) {
         return resolutions;
     }
-    let mut largest = vec![0.0f64; resolutions.len()];
-    for (run, lambdas) in eigenvalues.iter().enumerate() {
-        let errors = component_errors(group.kind(), lambdas, &followed.accuracies(group, run));
-        largest.iter_mut().zip(errors).for_each(|(largest, error)| *largest = largest.max(error));
-    }
+    let largest = largest_errors(group, eigenvalues, followed);
     resolutions.into_iter().zip(largest).map(|(rule, known)| rule.min(known)).collect()
+}
+
+/// The largest error of each component of a group at any run.
+fn largest_errors(group: &Group, eigenvalues: &[Vec<Complex<f64>>], followed: &Followed<'_>) -> Vec<f64> {
+    let of_run = |(run, lambdas): (usize, &Vec<Complex<f64>>)| {
+        component_errors(group.kind(), lambdas, &followed.accuracies(group, run))
+    };
+    let larger = |a: Vec<f64>, b: Vec<f64>| a.into_iter().zip(b).map(|(a, b)| a.max(b)).collect();
+    eigenvalues.iter().enumerate().map(of_run).reduce(larger).unwrap_or_default()
 }
 
 /// The components of a group that cannot be told from zero at any run: they are zero.

@@ -48,6 +48,9 @@ pub(super) fn study(study: &Study) -> String {
             file.line("margin", text, "stable means every damping ratio above this");
         }
     }
+    if study.spectrum.noise > 0.0 {
+        file.line("noise", float(study.spectrum.noise), "relative error of the model's eigenvalues");
+    }
 
     file.table("design");
     let kind = match study.design.kind {

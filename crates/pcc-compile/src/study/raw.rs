@@ -126,6 +126,7 @@ pub(super) struct Spectrum {
     pub frequencies: Option<Spanned<Vec<f64>>>,
     pub rigid_body_modes: Option<Spanned<i64>>,
     pub margin: Option<Spanned<Margin>>,
+    pub noise: Option<Spanned<f64>>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -16,6 +16,8 @@ pub struct SpectrumSettings {
     pub rigid_body_modes: Option<usize>,
     /// How far eigenvalues must stay from instability.
     pub margin: Margin,
+    /// Relative error of the model's eigenvalues, as a share of |λ|; 0 if it is not known.
+    pub noise: f64,
 }
 
 /// How design points are chosen.

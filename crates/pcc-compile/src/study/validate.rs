@@ -24,6 +24,9 @@ const TARGETS: [Target; 2] = [Target::Eigenvalues, Target::Invariants];
 /// Runs that a minimum-norm fit with derivatives may take: matrices of half a gigabyte.
 const MOST_RUNS: usize = 8_000;
 
+/// Answers with a larger relative error say nothing.
+const MOST_NOISE: f64 = 0.1;
+
 /// Rigid-body motion that a study may ask for: more than the largest model has.
 const MOST_RIGID: usize = 2_000;
 
@@ -217,7 +220,20 @@ impl Lines<'_> {
         };
         let rigid_body_modes = raw.rigid_body_modes.map(|count| self.rigid_body_modes(count)).transpose()?;
         let margin = raw.margin.map(|margin| self.margin(margin)).transpose()?.unwrap_or_default();
-        Ok(SpectrumSettings { target, modes, rigid_body_modes, margin })
+        let noise = raw.noise.map(|noise| self.noise(noise)).transpose()?.unwrap_or(0.0);
+        Ok(SpectrumSettings { target, modes, rigid_body_modes, margin, noise })
+    }
+
+    fn noise(&self, raw: Spanned<f64>) -> Result<f64, StudyError> {
+        let place = self.place("spectrum.noise", &raw);
+        match raw.into_inner() {
+            noise if (0.0..MOST_NOISE).contains(&noise) => Ok(noise),
+            other => Err(StudyError::OutOfRange {
+                place,
+                found: format!("{other:?}"),
+                expected: format!("a relative error of the eigenvalues from 0, below {MOST_NOISE}, like 1e-9"),
+            }),
+        }
     }
 
     fn band(&self, raw: Spanned<Vec<f64>>, target: Target) -> Result<Modes, StudyError> {

@@ -73,6 +73,8 @@ pub struct Spectrum {
     all_accuracies: Vec<Accuracy>,
     rigid_body_modes: usize,
     margin: Margin,
+    /// Error of each eigenvalue at least, as a share of |λ|.
+    noise: f64,
     eigenvalues: Vec<Complex<f64>>,
     accuracies: Vec<Accuracy>,
     oscillating: Vec<Complex<f64>>,
@@ -105,7 +107,21 @@ impl Spectrum {
         margin: Margin,
     ) -> Result<Self, SpectrumError> {
         let accuracies = if accuracies.len() == eigenvalues.len() { accuracies } else { &[] };
-        Self::without_rigid_body(eigenvalues.to_vec(), accuracies.to_vec(), rigid_body_modes, margin)
+        Self::without_rigid_body(eigenvalues.to_vec(), accuracies.to_vec(), rigid_body_modes, (margin, 0.0))
+    }
+
+    /// The same eigenvalues, each with an error of this share of |λ| at least, as the model's answers carry noise.
+    ///
+    /// # Errors
+    ///
+    /// As [`Spectrum::new`].
+    pub fn with_noise(self, noise: f64) -> Result<Self, SpectrumError> {
+        match noise == self.noise {
+            true => Ok(self),
+            false => {
+                Self::without_rigid_body(self.all, self.all_accuracies, self.rigid_body_modes, (self.margin, noise))
+            }
+        }
     }
 
     /// How many of these eigenvalues are negligible beside the largest.
@@ -123,7 +139,7 @@ impl Spectrum {
     pub fn with_rigid_body_modes(self, count: usize) -> Result<Self, SpectrumError> {
         match count == self.rigid_body_modes {
             true => Ok(self),
-            false => Self::without_rigid_body(self.all, self.all_accuracies, count, self.margin),
+            false => Self::without_rigid_body(self.all, self.all_accuracies, count, (self.margin, self.noise)),
         }
     }
 
@@ -131,7 +147,7 @@ impl Spectrum {
         all: Vec<Complex<f64>>,
         all_accuracies: Vec<Accuracy>,
         rigid_body_modes: usize,
-        margin: Margin,
+        (margin, noise): (Margin, f64),
     ) -> Result<Self, SpectrumError> {
         let sizes: Vec<f64> = all.iter().map(|lambda| lambda.norm()).collect();
         let largest = sizes.iter().copied().fold(0.0, f64::max);
@@ -141,7 +157,8 @@ impl Spectrum {
         let accuracy = |at: usize| {
             let Accuracy { re, whole } = all_accuracies.get(at).copied().unwrap_or(least);
             let or_least = |error: f64| if meaningful(error, sizes[at]) { error } else { least.whole };
-            Accuracy { re: or_least(re), whole: or_least(whole) }
+            let known = [or_least(re), or_least(whole)].map(|error| error.max(noise * sizes[at]));
+            Accuracy { re: known[0], whole: known[1] }
         };
         let one = |at: usize| Eigenvalue::new(all[at], sizes[at], accuracy(at));
         let mut kept = without_smallest(&sizes, rigid_body_modes);
@@ -188,6 +205,7 @@ impl Spectrum {
             all_accuracies,
             rigid_body_modes,
             margin,
+            noise,
             top,
             largest,
         })
@@ -210,7 +228,7 @@ impl Spectrum {
         };
         let all: Vec<Complex<f64>> = halves.iter().flat_map(both).collect();
         let accuracies = vec![Accuracy::default(); all.len()];
-        Self::without_rigid_body(all, accuracies, 0, Margin::default())
+        Self::without_rigid_body(all, accuracies, 0, (Margin::default(), 0.0))
     }
 
     /// Why so many of these eigenvalues cannot all be rigid-body motion, those with the smallest |λ|; `None` if they
@@ -405,6 +423,17 @@ mod tests {
         let found = Spectrum::with_zeros(&lambdas, &[infinite, infinite, small, small], 0, Margin::default()).unwrap();
         assert_eq!(found.top(), Top { max_re: 0.5, excess: 0.5, frequency: 0.0 });
         assert_eq!(found.mode(1).unwrap().re, 0.0);
+    }
+
+    #[test]
+    fn noise_hides_growth_rates_below_it() {
+        let parts = [(-1e-7, 100.0), (-1e-7, -100.0), (-0.1, 1e4), (-0.1, -1e4)];
+        let lambdas: Vec<Complex<f64>> = parts.iter().map(|&(re, im)| Complex::new(re, im)).collect();
+        let exact = Spectrum::new(&lambdas).unwrap();
+        assert_eq!(exact.top().max_re, -1e-7);
+        let noisy = exact.with_noise(1e-8).unwrap();
+        assert_eq!((noisy.top().max_re, noisy.mode(2).unwrap().re), (0.0, -0.1));
+        assert_eq!(noisy.with_rigid_body_modes(2).unwrap().max_re(), -0.1);
     }
 
     #[test]
