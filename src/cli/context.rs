@@ -14,12 +14,15 @@ use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt::Display;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// What every command is given.
 pub(super) struct Context {
     pub json: bool,
     pub quiet: bool,
     pub terminal: Terminal,
+    /// What is said after an error: it loses nothing.
+    pub afterwards: Mutex<Vec<String>>,
 }
 
 impl Context {
@@ -37,7 +40,18 @@ impl Context {
 
     /// What the user should know of recorded runs.
     pub fn note(&self, note: &Note) {
-        self.say(&note.to_string());
+        match note {
+            Note::Recorded { .. } | Note::FailuresReused => {
+                self.afterwards.lock().unwrap_or_else(PoisonError::into_inner).push(note.to_string());
+            }
+            _ => self.say(&note.to_string()),
+        }
+    }
+
+    /// Says what was to be said at the end.
+    pub fn say_afterwards(&self) {
+        let remarks = std::mem::take(&mut *self.afterwards.lock().unwrap_or_else(PoisonError::into_inner));
+        remarks.iter().for_each(|remark| self.say(remark));
     }
 
     /// Says what unfinished work has recorded.

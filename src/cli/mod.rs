@@ -22,6 +22,7 @@ use pcc_evaluate::foundation::is_interruption;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::Mutex;
 use terminal::{Interrupt, Terminal};
 
 /// How a command ended.
@@ -46,19 +47,13 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
             return ExitCode::from(if asked { 0 } else { FAILED });
         }
     };
-    match run_command(&arguments) {
-        Ok(Ending::Done) => ExitCode::SUCCESS,
-        Ok(Ending::CheckFailed) => ExitCode::from(1),
-        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
-        Err(error) if is_interruption(&*error) => {
-            complain(&message(&error));
-            ExitCode::from(INTERRUPTED)
-        }
-        Err(error) => {
-            complain(&message(&error));
-            ExitCode::from(FAILED)
-        }
-    }
+    run_command(&arguments)
+}
+
+/// Says what went wrong; the exit code that goes with it.
+fn failed(error: &anyhow::Error) -> ExitCode {
+    complain(&message(error));
+    ExitCode::from(if is_interruption(&**error) { INTERRUPTED } else { FAILED })
 }
 
 /// An error of long work on `what`; an interruption says nothing of that, since nothing is wrong with it.
@@ -90,13 +85,29 @@ fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-fn run_command(arguments: &Arguments) -> anyhow::Result<Ending> {
+fn run_command(arguments: &Arguments) -> ExitCode {
+    let (pool, context) = match prepare(arguments) {
+        Ok(prepared) => prepared,
+        Err(error) => return failed(&error),
+    };
+    let code = match pool.install(|| arguments.command.run(&context)) {
+        Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::CheckFailed) => ExitCode::from(1),
+        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(error) => failed(&error),
+    };
+    context.say_afterwards();
+    code
+}
+
+fn prepare(arguments: &Arguments) -> anyhow::Result<(rayon::ThreadPool, Context)> {
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let context = Context {
         json: arguments.json,
         quiet: arguments.quiet,
         terminal: Terminal::new(arguments.quiet, Interrupt::install()?),
+        afterwards: Mutex::default(),
     };
-    pool.install(|| arguments.command.run(&context))
+    Ok((pool, context))
 }

@@ -58,6 +58,8 @@ struct Pages {
     failures: Vec<Failure>,
     reused: u64,
     recorded: u64,
+    /// Of those, failures.
+    recorded_failures: u64,
     recorded_time: Duration,
     pending: Vec<Record>,
     last_sync: Instant,
@@ -70,6 +72,7 @@ impl Ledger {
             failures: Vec::new(),
             reused: 0,
             recorded: 0,
+            recorded_failures: 0,
             recorded_time: Duration::ZERO,
             pending: Vec::new(),
             last_sync: Instant::now(),
@@ -167,7 +170,12 @@ impl Ledger {
         self.pages().reused
     }
 
-    /// Runs that were recorded in the journal.
+    /// Failures that were recorded in the journal.
+    pub fn recorded_failures(&self) -> u64 {
+        self.pages().recorded_failures
+    }
+
+    /// Runs that were recorded in the journal, whether they answered or failed.
     pub fn recorded(&self) -> u64 {
         self.pages().recorded
     }
@@ -221,7 +229,11 @@ impl Ledger {
     fn write(&self, pages: &mut Pages) -> Result<(), JournalError> {
         if let Some(journal) = self.journal.as_ref().filter(|_| !pages.pending.is_empty()) {
             match journal.append(&pages.pending.iter().collect::<Vec<_>>()) {
-                Ok(()) => pages.recorded += pages.pending.len() as u64,
+                Ok(()) => {
+                    let is_failure = |record: &&Record| matches!(record.outcome, RunOutcome::Failed { .. });
+                    pages.recorded_failures += pages.pending.iter().filter(is_failure).count() as u64;
+                    pages.recorded += pages.pending.len() as u64;
+                }
                 Err(_) if self.is_optional => {}
                 Err(error) => return Err(error),
             }

@@ -94,8 +94,10 @@ pub enum Note {
     Recorded {
         /// The journal.
         journal: PathBuf,
-        /// Runs.
-        runs: u64,
+        /// Runs that answered.
+        answers: u64,
+        /// Runs that failed.
+        failures: u64,
     },
 }
 
@@ -140,12 +142,12 @@ impl fmt::Display for Note {
             Self::FailuresReused => {
                 f.write_str("failures were recorded earlier; --resume --retry-failed tries them again")
             }
-            Self::Recorded { journal, runs } => write!(
-                f,
-                "{}: {} recorded; --resume goes on from there",
-                journal.display(),
-                plural(*runs as usize, "model run")
-            ),
+            Self::Recorded { journal, answers, failures } => {
+                let counted = |count: u64, what: &str| (count > 0).then(|| plural(count as usize, what));
+                let both = [counted(*answers, "model run"), counted(*failures, "failure")];
+                let both: Vec<String> = both.into_iter().flatten().collect();
+                write!(f, "{}: {} recorded; --resume goes on from there", journal.display(), both.join(" and "))
+            }
         }
     }
 }
@@ -266,13 +268,14 @@ impl Books {
     /// What an unfinished command has recorded.
     pub fn recorded(&self) -> Option<Note> {
         let journal = self.journal.as_ref().filter(|_| self.ledger.recorded() > 0)?;
-        Some(Note::Recorded { journal: journal.clone(), runs: self.ledger.recorded() })
+        let failures = self.ledger.recorded_failures();
+        Some(Note::Recorded { journal: journal.clone(), answers: self.ledger.recorded() - failures, failures })
     }
 
-    /// Ends work that failed or was interrupted, and says what is recorded of it. The journal of interrupted work is
-    /// kept if it took long to fill.
-    pub fn give_up(self, is_interruption: bool) -> Option<Note> {
-        let took_long = is_interruption && self.ledger.recorded_time() >= WORTH_KEEPING;
+    /// Ends work that failed or was interrupted, and says what is recorded of it. A journal that took long to fill is
+    /// kept, whatever ended the work.
+    pub fn give_up(self) -> Option<Note> {
+        let took_long = self.ledger.recorded_time() >= WORTH_KEEPING;
         if took_long || !self.is_disposable {
             return self.recorded();
         }

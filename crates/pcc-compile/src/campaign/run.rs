@@ -66,7 +66,7 @@ pub enum RunError {
     },
     /// Answers are missing, and the model is not to be run.
     #[error(
-        "{missing} model runs of the design are not answered yet: write them to a table with pcc design STUDY --emit ROWS.csv, run \
+        "pcc does not run this model here, and {missing} points of the design are not answered yet: write them to a table with pcc design STUDY --emit ROWS.csv, run \
          them, and hand the answers over with pcc ingest STUDY RESULTS.csv"
     )]
     Unanswered {

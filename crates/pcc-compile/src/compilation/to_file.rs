@@ -5,7 +5,7 @@ use crate::campaign::journal::JournalError;
 use crate::campaign::{Books, Failure, Note, Recording};
 use crate::study::Study;
 use pcc_evaluate::artifact::{Format, WriteError, encode};
-use pcc_evaluate::foundation::{FileError, Observer, check_writable, is_interruption, save};
+use pcc_evaluate::foundation::{FileError, Observer, check_writable, save};
 use pcc_evaluate::surrogate::Surrogate;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -72,7 +72,7 @@ pub fn build_to_file(
             if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
                 tell(&Note::FailuresReused);
             }
-            books.give_up(is_interruption(&error)).iter().for_each(tell);
+            books.give_up().iter().for_each(tell);
             return Err(error.into());
         }
     };
@@ -90,7 +90,7 @@ pub fn build_to_file(
     };
     match observer.interrupted() {
         // The build could go on.
-        true => books.give_up(true).iter().for_each(tell),
+        true => books.give_up().iter().for_each(tell),
         false => books.close(),
     }
     Ok(file)

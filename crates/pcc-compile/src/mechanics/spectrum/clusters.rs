@@ -22,13 +22,15 @@ pub enum ClusterError {
     /// A list of modes has some of a group, but not all.
     #[error(
         "modes {listed} and {missing} touch ({first:.6} and {second:.6} rad/s) and belong together, but only mode \
-         {listed} is listed; list both or neither"
+         {listed} is listed; use modes = {smallest:?}, or leave {listed} out as well"
     )]
     Split {
         /// The mode in the list.
         listed: usize,
         /// The mode that is not.
         missing: usize,
+        /// The smallest list that has all that the given one has, and splits nothing.
+        smallest: Vec<usize>,
         /// Frequency of the lower one.
         first: f64,
         /// Frequency of the upper one.
@@ -64,6 +66,25 @@ pub enum ClusterError {
     },
 }
 
+/// A list of modes and all that touch one of them, and so on; entry k of `touching` is of modes k + 1 and k + 2.
+fn with_all_that_touch(modes: &[usize], touching: &[Option<usize>]) -> Vec<usize> {
+    let mut smallest = modes.to_vec();
+    let links = || touching.iter().enumerate().filter(|(_, at)| at.is_some()).map(|(k, _)| [k + 1, k + 2]);
+    // Upwards, then downwards: links are between neighbours.
+    for [lower, upper] in links() {
+        if smallest.contains(&lower) && !smallest.contains(&upper) {
+            smallest.push(upper);
+        }
+    }
+    for [lower, upper] in links().collect::<Vec<_>>().into_iter().rev() {
+        if smallest.contains(&upper) && !smallest.contains(&lower) {
+            smallest.push(lower);
+        }
+    }
+    smallest.sort_unstable();
+    smallest
+}
+
 /// Groups the modes with the given ranks, ascending, by the spectra of a design. All spectra have as many modes.
 ///
 /// # Errors
@@ -89,7 +110,9 @@ pub fn clusters(spectra: &[Spectrum], modes: &[usize]) -> Result<Vec<Vec<usize>>
         let (has_lower, has_upper) = (modes.contains(&lower), modes.contains(&upper));
         if has_lower != has_upper {
             let (listed, missing) = if has_lower { (lower, upper) } else { (upper, lower) };
-            return Err(ClusterError::Split { listed, missing, first: frequency(lower), second: frequency(upper), at });
+            let smallest = with_all_that_touch(modes, &touching);
+            let (first, second) = (frequency(lower), frequency(upper));
+            return Err(ClusterError::Split { listed, missing, smallest, first, second, at });
         }
     }
     modes.iter().filter(|&&mode| mode <= count).try_for_each(|&mode| off_the_real_axis(spectra, mode))?;
@@ -149,8 +172,12 @@ mod tests {
         let design = [spectrum(&[10.0, 20.0, 30.0]), spectrum(&[10.0, 20.0, 21.0])];
         assert_eq!(clusters(&design, &[1]).unwrap(), [vec![1]]);
         assert_eq!(clusters(&design, &[2, 3]).unwrap(), [vec![2, 3]]);
-        let error = ClusterError::Split { listed: 3, missing: 2, first: 20.0, second: 21.0, at: 1 };
+        let smallest = vec![1, 2, 3];
+        let error = ClusterError::Split { listed: 3, missing: 2, smallest, first: 20.0, second: 21.0, at: 1 };
         assert_eq!(clusters(&design, &[1, 3]), Err(error));
+        let chain = [Some(0), Some(0), None, Some(0)];
+        assert_eq!(with_all_that_touch(&[2], &chain), [1, 2, 3]);
+        assert_eq!(with_all_that_touch(&[1, 5], &chain), [1, 2, 3, 4, 5]);
     }
 
     #[test]
