@@ -29,7 +29,11 @@ pub fn agree_on_rigid_body_motion(runs: &mut [Run], known: usize) -> usize {
 
 /// Points at which the structure of a model is looked at, whatever the points of the runs: what is zero at random
 /// points is zero everywhere, while a slow eigenvalue may pass zero just where somebody asks.
-const STRUCTURE_POINTS: u64 = 4;
+const STRUCTURE_POINTS: u64 = 16;
+
+/// The same of models with more than so many states, each of which takes a second or so: every run counts anew besides.
+const POINTS_OF_LARGE: u64 = 4;
+const LARGE: usize = 100;
 
 /// They are numbers of a stream that no design has.
 const FIRST_STRUCTURE_POINT: u64 = 1 << 41;
@@ -87,6 +91,9 @@ impl Structure {
 fn zeros(study: &Study, model: &dyn Model) -> usize {
     let at_point = |index: u64| {
         let Linearization { state_matrix, second_order, .. } = system(study, model, index)?;
+        if state_matrix.nrows() > LARGE && index >= POINTS_OF_LARGE {
+            return None;
+        }
         let most = zero_eigenvalues(state_matrix);
         match second_order.filter(|_| most > 0) {
             Some(system) => Some(free_motion(&system, most).unwrap_or(most)),

@@ -1,8 +1,12 @@
 //! The covariance of values and derivatives under a prior, and how it changes with the prior's parameters.
 
+use super::covariance_of_many::{self, Layout};
 use super::prior::Prior;
 use crate::fitting::regression::{BasisTables, Equations};
 use nalgebra::DMatrix;
+
+/// From so many inputs on sums and products are made for many blocks together.
+const MANY_INPUTS: usize = 12;
 
 /// The matrix K of a prior for some equations, with what its derivatives need.
 ///
@@ -39,17 +43,17 @@ const PAIRS: [(Side, Side); 7] = [
 ];
 
 /// One input's factor of every block.
-struct InputKernel {
+pub(super) struct InputKernel {
     /// One per pair of sides, as many as occur.
-    factors: Vec<Factor>,
+    pub factors: Vec<Factor>,
 }
 
-struct Factor {
-    value: DMatrix<f64>,
+pub(super) struct Factor {
+    pub value: DMatrix<f64>,
     /// By ln(−ln w_j).
-    by_decay: DMatrix<f64>,
+    pub by_decay: DMatrix<f64>,
     /// What degree 0 adds to every entry.
-    constant: f64,
+    pub constant: f64,
 }
 
 impl Kernel {
@@ -58,6 +62,10 @@ impl Kernel {
         let inputs =
             (0..prior.inputs()).map(|input| InputKernel::new(prior, input, tables, equations, degree)).collect();
         let mut kernel = Self { matrix: DMatrix::zeros(size, size), equations: equations.clone(), inputs };
+        if let Some(layout) = kernel.many() {
+            kernel.matrix = covariance_of_many::matrix(&kernel.inputs, layout);
+            return kernel;
+        }
         for (rows, columns) in kernel.blocks() {
             let mut product = kernel.factor(0, rows, columns).value.clone();
             for input in 1..kernel.inputs.len() {
@@ -77,6 +85,9 @@ impl Kernel {
 
     /// For a function f of K with df = Σ G_ab dK_ab and a symmetric G, its derivatives by the parameters of the prior.
     pub fn gradient(&self, by_matrix: &DMatrix<f64>) -> Vec<f64> {
+        if let Some(layout) = self.many() {
+            return covariance_of_many::gradient(&self.inputs, layout, &self.matrix, by_matrix);
+        }
         let (mut gradient, mut by_weight) = (vec![0.0; self.inputs.len()], 0.0);
         for (rows, columns) in self.blocks() {
             let at = (self.first_row(rows), self.first_row(columns));
@@ -94,6 +105,13 @@ impl Kernel {
         }
         gradient.push(by_weight);
         gradient
+    }
+
+    /// Where blocks are, if there are so many that they are better not made one by one.
+    fn many(&self) -> Option<Layout> {
+        let derivatives = self.equations.points_with_derivatives().len();
+        let layout = Layout { samples: self.equations.samples(), derivatives };
+        (derivatives > 0 && self.inputs.len() >= MANY_INPUTS).then_some(layout)
     }
 
     /// The blocks on and above the diagonal: values are 0, derivatives by input j are j + 1.
@@ -156,7 +174,7 @@ impl InputKernel {
 const LANES: usize = 8;
 
 /// Σ h b/k and Σ h (k − constant)/k over the entries h, k, b of three matrices, in eight interleaved parts.
-fn sums(weighted: &[f64], factor: &[f64], slope: &[f64], constant: f64) -> [f64; 2] {
+pub(super) fn sums(weighted: &[f64], factor: &[f64], slope: &[f64], constant: f64) -> [f64; 2] {
     let (mut decay, mut weight) = ([0.0; LANES], [0.0; LANES]);
     let mut add = |h: &[f64; LANES], k: &[f64; LANES], b: &[f64; LANES]| {
         for lane in 0..LANES {
@@ -209,6 +227,40 @@ mod tests {
             let expected = &columns * columns.transpose();
             let found = Kernel::new(&prior, &tables, &equations, DEGREE).matrix;
             assert!((&found - &expected).amax() < 1e-13 * expected.amax());
+        }
+    }
+
+    /// With these inputs the matrix and its derivatives are made in another way, which must be as good.
+    #[test]
+    fn many_inputs_have_the_covariances_of_their_terms() {
+        const INPUTS: usize = MANY_INPUTS;
+        let mut design = NestedLatinHypercube::new(INPUTS, 3);
+        design.grow_to(5);
+        let samples: Samples = design.samples(|_, u| 2.0 * u - 1.0);
+        let tables = BasisTables::with_slopes(&samples, &vec![Family::Legendre.recurrence(2); INPUTS], 2);
+        let at: Vec<f64> = (0..INPUTS).map(|j| 0.1 + 0.03 * j as f64).chain([-1.5]).collect();
+        let equations = Equations::with_derivatives(5, INPUTS, vec![0, 2, 3]);
+        let kernel = |parameters: &[f64]| Kernel::new(&Prior::with(parameters), &tables, &equations, 2);
+        let prior = Prior::with(&at);
+        let terms = prior.likeliest(3usize.pow(INPUTS as u32), 2);
+        let mut columns = tables.stacked(&terms, &equations);
+        for (mut column, alpha) in columns.column_iter_mut().zip(&terms) {
+            column.scale_mut(prior.variance(alpha).sqrt());
+        }
+        let expected = &columns * columns.transpose();
+        let found = kernel(&at).matrix;
+        assert!((&found - &expected).amax() < 1e-12 * expected.amax());
+        let size = equations.rows();
+        let by_matrix = DMatrix::from_fn(size, size, |a, b| ((a + b) as f64).sin() + (a * b) as f64 * 0.01);
+        let gradient = kernel(&at).gradient(&by_matrix);
+        for k in [0, 1, INPUTS - 1, INPUTS] {
+            let moved = |step: f64| {
+                let mut parameters = at.clone();
+                parameters[k] += step;
+                kernel(&parameters).matrix.dot(&by_matrix)
+            };
+            let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            assert!((gradient[k] - difference).abs() < 1e-6 * (1.0 + difference.abs()), "{k}");
         }
     }
 

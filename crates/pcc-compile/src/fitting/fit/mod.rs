@@ -2,6 +2,7 @@
 
 pub mod auto;
 mod covariance;
+mod covariance_of_many;
 mod cross_validation;
 pub mod gpc;
 pub mod method;
