@@ -309,7 +309,7 @@ impl FitReport {
             surrogate.components().iter().filter(|c| has_none(c.id)).map(|component| component.name.clone()).collect();
         (!names.is_empty()).then(|| {
             format!(
-                "the derivatives of {} contradict the values and were not used; check the derivatives of the model",
+                "the derivatives of {} do not fit the values, as where answers have kinks or noise, and were not used",
                 names.join(", ")
             )
         })
@@ -454,7 +454,7 @@ mod tests {
         surrogate.training.counts.gradients += 2;
         let weights = surrogate.training.settings.iter_mut().find(|setting| setting.key == "derivative_weights");
         weights.unwrap().value = SettingValue::Text("1 0 1 1 1 1 0.1 0".to_owned());
-        let said = "the derivatives of im_1, im_c0_3_4 contradict the values";
+        let said = "the derivatives of im_1, im_c0_3_4 do not fit the values";
         assert!(FitReport::warnings_of(&surrogate)[0].starts_with(said));
 
         let labels = Setting { key: "labels".to_owned(), value: SettingValue::Text("modulus".to_owned()) };
