@@ -3,8 +3,9 @@
 use super::terminal::Terminal;
 use super::{about, complain, print};
 use crate::report::EvalReport;
-use pcc_compile::campaign::{Books, Note, Recording};
+use pcc_compile::campaign::{Books, Note, Recording, RunError};
 use pcc_compile::compilation::{BuildFileError, BuiltFile, build_to_file};
+use pcc_compile::reference::ReferenceError;
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::Format;
 use pcc_evaluate::evaluation::Question;
@@ -57,6 +58,15 @@ impl Context {
     /// Says what unfinished work has recorded.
     pub fn say_recorded(&self, books: &Books) {
         books.recorded().iter().for_each(|note| self.note(note));
+    }
+
+    /// The same of work that compares with the model, and what can be done about runs that fail.
+    pub fn say_recorded_of(&self, books: &Books, error: &ReferenceError) {
+        self.say_recorded(books);
+        if matches!(error, ReferenceError::Run(RunError::Model { .. })) {
+            let remark = "--failures count goes on where runs fail, and counts them as disagreement";
+            self.afterwards.lock().unwrap_or_else(PoisonError::into_inner).push(remark.to_owned());
+        }
     }
 
     /// Opens the books of work that runs the model at random points.

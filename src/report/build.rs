@@ -101,7 +101,7 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
     let runs = count(surrogate.training.counts.direct_computations);
     let best = match surrogate.training.levels.last() {
         Some(&last) if last < surrogate.training.counts.direct_computations => {
-            format!(", of which the first {} gave the best fit", count(last))
+            format!(", of which the first {} gave the best fit,", count(last))
         }
         _ => String::new(),
     };
@@ -121,12 +121,13 @@ impl RecordedRuns {
     /// What to know of runs that failed.
     fn warning(&self) -> Option<String> {
         let first = self.failed.first()?;
-        Some(format!(
-            "{} model runs failed and were left out, nothing in their place; the first at {}: {}",
-            count(self.failed.len() as u64),
-            first.point,
-            first.cause
-        ))
+        let failed = match self.failed.len() {
+            1 => "1 model run failed and was left out, nothing in its place; it was".to_owned(),
+            more => {
+                format!("{} model runs failed and were left out, nothing in their place; the first", count(more as u64))
+            }
+        };
+        Some(format!("{failed} at {}: {}", first.point, first.cause))
     }
 }
 

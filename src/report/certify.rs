@@ -71,7 +71,9 @@ impl CertifyReport {
                 samples,
                 falsely_claimed: falsely_stable,
                 falsely_denied: falsely_unstable,
-                unknown: failed,
+                // Which of the two is not recorded.
+                claimed_unknown: failed,
+                denied_unknown: failed,
             };
             let [lower, upper] = counts.difference(level);
             lower > 0.0 || upper < 0.0

@@ -9,6 +9,9 @@ use serde::Serialize;
 /// Inputs whose values at failed runs span at most this share of their domain are named.
 const NARROW: f64 = 0.6;
 
+/// Failures that have a place at least.
+const FEWEST_NAMED: usize = 4;
+
 /// Between what shares lie, whatever the model would have answered where it did not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bounds {
@@ -36,7 +39,12 @@ pub(super) fn warning(surrogate: &Surrogate) -> Option<String> {
     let range = |j: usize| format!("{} {} to {}", names[j], significant(lower[j], 3), significant(upper[j], 3));
     let is_narrow = |j: &usize| standardized[*j][1] - standardized[*j][0] <= 2.0 * NARROW;
     let places: Vec<String> = (0..names.len()).filter(is_narrow).map(range).collect();
-    let places = if places.is_empty() { String::new() } else { format!(", all at {}", places.join(", ")) };
+    // So few lie close together by chance.
+    let places = if places.is_empty() || failed < FEWEST_NAMED {
+        String::new()
+    } else {
+        format!(", all at {}", places.join(", "))
+    };
     Some(format!(
         "the model did not answer in {failed} of {all} runs of the design{places}; there the surrogate extrapolates"
     ))

@@ -40,6 +40,20 @@ impl EvalReport {
     /// The answer in a sentence or two.
     pub(super) fn headline(&self) -> String {
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        let unanswered = match (self.unanswered_proportion, self.bounds) {
+            (Some(share), Some(bounds)) => format!(
+                " The model did not answer in {}: between {} and {} are stable.",
+                percent(share),
+                percent(bounds.stable.lower),
+                percent(bounds.stable.upper)
+            ),
+            _ => String::new(),
+        };
+        self.verdict() + &unanswered
+    }
+
+    fn verdict(&self) -> String {
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         let marginal = match self.marginal_proportion > 0.0 {
             true => format!(" Marginal in {}: neither growing nor decaying.", percent(self.marginal_proportion)),
             false => String::new(),

@@ -55,6 +55,9 @@ pub struct SweepReport {
     /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file: what the intervals
     /// do not hold.
     pub max_re_residuals: Vec<QuantileReport>,
+    /// What to know of a surrogate whose model did not answer everywhere; absent if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unanswered: Option<String>,
     /// Files that were written.
     #[serde(skip)]
     pub files: Vec<String>,
@@ -134,6 +137,7 @@ impl SweepReport {
             max_re_residuals: residuals.iter().map(|q| QuantileReport { level: q.level, value: q.value }).collect(),
             files: Vec::new(),
             merged_parts: found.merged_parts,
+            unanswered: super::coverage::warning(found.surrogate),
             elapsed_seconds: found.elapsed_seconds,
         }
     }
@@ -229,6 +233,7 @@ impl fmt::Display for SweepReport {
             2 => self.write_map(f)?,
             _ => writeln!(f, "{}from, to: 95 % sampling interval", self.table())?,
         }
+        self.unanswered.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))?;
         match self.files.is_empty() {
             true => Ok(()),
             false => writeln!(f, "\nwritten to {}", self.files.join(", ")),

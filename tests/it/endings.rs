@@ -176,6 +176,56 @@ fn designs_of_any_number_of_inputs_have_two_levels() {
     assert_eq!(small.design.initial, 6, "what there may be at most is halved");
 }
 
+/// Two modes, one of which can grow; nobody fails.
+const PROGRAM: &str = r#"
+    format = 1
+    name = "program"
+    [model]
+    kind = "command"
+    command = ["none"]
+    eigenvalues = 1
+    on_failure = "skip"
+    [inputs]
+    a = { distribution = "uniform", lower = 0.0, upper = 1.0 }
+    b = { distribution = "uniform", lower = -1.0, upper = 1.0 }
+"#;
+
+/// Re λ has four waves over the range of a, more than the first designs can follow.
+struct Wavy;
+
+impl Model for Wavy {
+    fn eigenvalues(&self, point: &[f64]) -> Result<Vec<Complex<f64>>, ModelError> {
+        Ok(vec![Complex::new(0.5 * (25.0 * point[0]).sin() + point[0] - 0.6, 50.0 + point[1])])
+    }
+}
+
+/// Runs that were not made because the user stopped are no failures.
+#[test]
+fn a_build_that_is_stopped_between_runs_has_no_failures() {
+    let study = Study::from_toml(PROGRAM).unwrap();
+    let impatient = Impatient { levels: AtomicUsize::new(1), takes_what_there_is: true };
+    let surrogate = build_with(&study, Box::new(Wavy), &impatient).unwrap();
+    assert_eq!((surrogate.coverage.clone(), surrogate.training.counts.failed), (None, 0));
+    assert_eq!(surrogate.training.counts.direct_computations, 18);
+}
+
+/// A component that looks like noise to a small design is no reason to be sure of the proportion.
+#[test]
+fn what_small_designs_cannot_follow_is_not_estimated_away() {
+    for seed in 1..=3 {
+        let study = Study { seed, ..Study::from_toml(PROGRAM).unwrap() };
+        let surrogate = build_with(&study, Box::new(Wavy), &Silent).unwrap();
+        let truth = (0..100_000).filter(|i| {
+            let a = (f64::from(*i) + 0.5) * 1e-5;
+            0.5 * (25.0 * a).sin() + a - 0.6 < 0.0
+        });
+        let truth = truth.count() as f64 * 1e-5;
+        let found = stable(&surrogate);
+        let estimated = surrogate.decision.proportion_error.map_or(f64::INFINITY, |error| error * found);
+        assert!((found - truth).abs() < 5e-3_f64.max(3.0 * estimated), "{found} ± {estimated}, not {truth}");
+    }
+}
+
 /// Asks to stop at the first step after so many levels.
 struct Impatient {
     levels: AtomicUsize,

@@ -83,7 +83,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let campaign = Campaign { counts_failures: options.failures == Failures::Count, ..books.campaign(&study) };
     let start = Instant::now();
     let certificate = certify_with_model(&surrogate, campaign, options.runs, options.seed, LEVEL, &context.terminal)
-        .inspect_err(|_| context.say_recorded(&books))
+        .inspect_err(|error| context.say_recorded_of(&books, error))
         .map_err(|error| about(&source.to_string(), error))?;
     surrogate.certificates.push(certificate);
     save(output, &encode(&surrogate, format)?)?;

@@ -50,7 +50,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let campaign = Campaign { counts_failures: options.failures == Failures::Count, ..books.campaign(&study) };
     let start = Instant::now();
     let comparison = compare_with_model(&surrogate, campaign, options.samples, options.seed, &context.terminal)
-        .inspect_err(|_| context.say_recorded(&books))
+        .inspect_err(|error| context.say_recorded_of(&books, error))
         .map_err(|error| about(&options.study.display().to_string(), error))?;
     let report = CompareReport::new(&study.name, &surrogate, &comparison, options.seed, start.elapsed().as_secs_f64());
     context.print(&report)?;

@@ -1,5 +1,5 @@
-//! How long builds with many inputs take: chains of 30, 50 and 100 masses with as many uncertain springs, all modes, 100
-//! model runs.
+//! How long builds with many inputs take: chains of 30, 50 and 100 masses with as many uncertain springs, all modes,
+//! 100 model runs.
 //!
 //! `cargo run --release -p pcc-tools --bin many_inputs -- [INPUTS…]`
 

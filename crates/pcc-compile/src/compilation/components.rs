@@ -19,7 +19,7 @@ fn work_of(response: Response<'_>, inputs: usize) -> u64 {
     rows * rows * (rows + WORK_PER_ENTRY)
 }
 
-/// Where errors no longer fall, expansions that explain less of the variance than this give way to the mean.
+/// Where errors no longer fall, expansions that explain no more of the variance than this give way to the mean.
 const MOSTLY_NOISE: f64 = 0.5;
 
 /// A fitted component and the name of the method that fitted it.
@@ -158,7 +158,8 @@ impl<'a> ComponentFit<'a> {
         observer: &dyn Observer,
     ) -> Result<Fitted, Interrupted> {
         let asks_for_more = fitted.stop == StopReason::DesignExhausted;
-        if !asks_for_more || !errors.has_stopped_falling(self.study.fit.proportion_tolerance.is_some()) {
+        let may_be_noisy = self.study.fit.proportion_tolerance.is_some() && response.gradients.is_none();
+        if !asks_for_more || !errors.has_stopped_falling(may_be_noisy) {
             return Ok(fitted);
         }
         let is_mostly_noise = fitted.errors.and_then(|errors| errors.s2).is_some_and(|s2| s2 < MOSTLY_NOISE);

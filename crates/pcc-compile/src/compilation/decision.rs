@@ -45,9 +45,10 @@ const LEVELS: [f64; 9] = [0.005, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99
 /// Points at which proportions are compared between levels: T.
 const POINTS: usize = 50_000;
 
-/// Points that are tried for changing sides, those with the smallest excess, and as many marginal ones: the others are
-/// too far away.
+/// Points that are tried for changing sides, those with the smallest excess, and as many marginal ones. Of the others,
+/// which only errors as large as all of the excess reach, each of those tried stands for [`FAR_APART`].
 const TRIED_POINTS: usize = 10_000;
+const FAR_APART: usize = 20;
 
 /// Runs whose residuals are tried, evenly spread: more change the estimate less than it is uncertain anyway.
 const TRIED_RUNS: usize = 150;
@@ -300,14 +301,13 @@ impl<'a> Judge<'a> {
         // Marginal points do not say how near they are to instability.
         let (marginal, mut near): (Vec<usize>, Vec<usize>) = (0..POINTS).partition(|&i| block.excess[i] == 0.0);
         let nearer = |a: &usize, b: &usize| block.excess[*a].abs().total_cmp(&block.excess[*b].abs()).then(a.cmp(b));
-        if near.len() > TRIED_POINTS {
-            near.select_nth_unstable_by(TRIED_POINTS, nearer);
-            near.truncate(TRIED_POINTS);
-        }
         near.sort_unstable_by(nearer);
+        let far = near.split_off(near.len().min(TRIED_POINTS));
         let every = marginal.len().div_ceil(TRIED_POINTS).max(1);
-        let near = marginal.iter().step_by(every).map(|&i| (i, every as f64)).chain(near.into_iter().map(|i| (i, 1.0)));
-        let near = near.collect();
+        let evenly = |points: Vec<usize>, every: usize| {
+            points.into_iter().step_by(every).map(|i| (i, every as f64)).collect::<Vec<_>>()
+        };
+        let near = [evenly(marginal, every), evenly(near, 1), evenly(far, FAR_APART)].concat();
         let distances: Vec<f64> = runs.iter().map(|run| run.spectrum.top().excess.abs()).collect();
         let mut sorted: Vec<f64> = distances.iter().copied().filter(|&distance| distance > 0.0).collect();
         sorted.sort_by(f64::total_cmp);

@@ -8,8 +8,9 @@
 /// Growth of the design over which an error is expected to fall.
 const GROWTH: usize = 2;
 
-/// The same where nothing but the errors of components decides: the doubt needs more of a proof.
-const GROWTH_ALONE: usize = 4;
+/// The same where nothing but the errors of components decides, or where the model has derivatives, whose answers carry
+/// no noise but rounding: the doubt needs more of a proof.
+const GROWTH_OF_EXACT: usize = 4;
 
 /// The errors of a component at runs left out, design by design.
 #[derive(Debug, Clone, Default)]
@@ -28,10 +29,10 @@ impl ErrorHistory {
     }
 
     /// Whether the error of the last design is above what 1/√N makes of an earlier one, on a design of half the size or
-    /// less. The proportion may be `judged` beside it, so that what matters is looked at a second time.
-    pub fn has_stopped_falling(&self, judged: bool) -> bool {
+    /// less. Answers may be `noisy`, and what matters be looked at a second time by the proportion.
+    pub fn has_stopped_falling(&self, noisy: bool) -> bool {
         let Some((&(runs, error), former)) = self.errors.split_last() else { return false };
-        let growth = if judged { GROWTH } else { GROWTH_ALONE };
+        let growth = if noisy { GROWTH } else { GROWTH_OF_EXACT };
         let expected = |&(size, before): &(usize, f64)| before * (size as f64 / runs as f64).sqrt();
         let lowest =
             former.iter().filter(|(size, _)| growth * size <= runs).map(expected).fold(f64::INFINITY, f64::min);

@@ -69,6 +69,8 @@ pub(super) struct Evaluations<'a> {
     campaign: Campaign<'a>,
     design: NestedLatinHypercube,
     runner: Runner<'a>,
+    /// Points of the design whose runs have ended; an interruption may leave others behind them.
+    tried: usize,
     /// For each sample, its point of the design.
     answered: Vec<usize>,
     runs: Vec<Run>,
@@ -96,6 +98,7 @@ impl<'a> Evaluations<'a> {
                 }
             },
             runner: if ranks { runner } else { runner.without_ranks() }.with_derivatives(study.uses_derivatives()),
+            tried: 0,
             answered: Vec::new(),
             runs: Vec::new(),
             root: None,
@@ -182,7 +185,9 @@ impl<'a> Evaluations<'a> {
         observer.begin("model runs", points.len() as u64);
         let runs = self.runner.run_skipping(&points, observer);
         observer.finish();
-        for (i, run) in (old..).zip(runs?) {
+        let runs = runs?;
+        self.tried = old + runs.len();
+        for (i, run) in (old..).zip(runs) {
             if let Some(run) = run {
                 self.answered.push(i);
                 self.runs.push(run);
@@ -206,13 +211,13 @@ impl<'a> Evaluations<'a> {
 
     /// Number of runs that failed.
     pub fn failed(&self) -> usize {
-        self.design.len() - self.runs.len()
+        self.tried - self.runs.len()
     }
 
     /// The runs, if some failed.
     pub fn coverage(&self) -> Option<Coverage> {
         let (points, mut answered, mut unanswered) = (self.points(), Vec::new(), Vec::new());
-        for i in 0..points.len() {
+        for i in 0..self.tried {
             let runs = if self.answered.contains(&i) { &mut answered } else { &mut unanswered };
             runs.push(points.point(i).to_vec());
         }
@@ -228,7 +233,7 @@ impl<'a> Evaluations<'a> {
     /// The points whose runs answered, in standardized coordinates.
     pub fn samples(&self) -> Samples {
         let points = self.points();
-        if self.failed() == 0 {
+        if self.answered.len() == points.len() {
             return points;
         }
         let answered = self.answered.iter().flat_map(|&i| points.point(i)).copied();

@@ -1,5 +1,8 @@
 //! The loop of the build: the paper's five steps (section 3.3.3), for all components on one design. A level is a design
 //! of one size, with everything fitted anew.
+//!
+//! A build that ends early gives the level with the smallest estimated error. What the runs of later levels say of an
+//! earlier one is part of that: the share of them that it calls otherwise than the model.
 
 use super::components::{ComponentFit, ComponentResult};
 use super::decision::{Before, Previous, judge};
@@ -14,6 +17,7 @@ use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::Target;
 use crate::study::Study;
 use pcc_evaluate::components::Output;
+use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::{Observer, is_interruption};
 use pcc_evaluate::surrogate::Surrogate;
 use std::time::Instant;
@@ -33,15 +37,15 @@ pub(super) fn build(
             Ok(None) => {}
             Ok(Some(surrogate)) => return Ok(levels.ended(surrogate, None)),
             Err(error) if is_interruption(&error) && observer.takes_what_there_is() => {
-                let best = levels.best.take().ok_or(error)?;
-                return Ok(levels.ended(best.surrogate, Some(EarlyEnd::Interrupted)));
+                let best = levels.best().ok_or(error)?;
+                return Ok(levels.ended(best, Some(EarlyEnd::Interrupted)));
             }
             Err(error) => return Err(error),
         }
         if let Some(end) = levels.early_end
-            && let Some(best) = levels.best.take()
+            && let Some(best) = levels.best()
         {
-            return Ok(levels.ended(best.surrogate, Some(end)));
+            return Ok(levels.ended(best, Some(end)));
         }
     }
 }
@@ -57,16 +61,10 @@ struct Levels<'a> {
     grouping: Vec<Output>,
     previous: Option<Previous>,
     spent: Spent,
-    best: Option<Best>,
+    /// Levels that could be the result.
+    candidates: Vec<Surrogate>,
     /// Why no further level is worth its runs.
     early_end: Option<EarlyEnd>,
-}
-
-/// The level with the smallest estimated error, the last of about equal ones.
-struct Best {
-    surrogate: Surrogate,
-    /// Infinite if it is not known.
-    error: f64,
 }
 
 impl<'a> Levels<'a> {
@@ -82,7 +80,7 @@ impl<'a> Levels<'a> {
             grouping: Vec::new(),
             previous: None,
             spent: Spent::default(),
-            best: None,
+            candidates: Vec::new(),
             early_end: None,
         })
     }
@@ -128,19 +126,42 @@ impl<'a> Levels<'a> {
                 None => Ok(Some(surrogate)),
             };
         };
-        self.keep_best(surrogate);
+        if self.fitting.refusal().is_none() {
+            self.candidates.push(surrogate);
+        }
         self.early_end = self.stopping.early_end(&results, self.fitting.work());
         self.sizes.push(next as u64);
         Ok(None)
     }
 
-    /// Keeps a level that could be the result.
-    fn keep_best(&mut self, surrogate: Surrogate) {
-        let error = surrogate.decision.proportion_error.unwrap_or(f64::INFINITY);
-        let is_better = self.best.as_ref().is_none_or(|best| error <= MUCH_WORSE * best.error);
-        if is_better && self.fitting.refusal().is_none() {
-            self.best = Some(Best { surrogate, error });
-        }
+    /// The best level so far, the last of about equal ones, with what later runs say of its error.
+    fn best(&mut self) -> Option<Surrogate> {
+        let known = std::mem::take(&mut self.candidates).into_iter().map(|mut surrogate| {
+            let denied = self.denied_by_later_runs(&surrogate);
+            let error = surrogate.decision.proportion_error;
+            if denied > 0.0 {
+                surrogate.decision.proportion_error = Some(error.unwrap_or(0.0).max(denied));
+            }
+            (error.unwrap_or(f64::INFINITY).max(denied), surrogate)
+        });
+        let better = |best: (f64, Surrogate), later: (f64, Surrogate)| {
+            if later.0 <= MUCH_WORSE * best.0 { later } else { best }
+        };
+        known.reduce(better).map(|(_, surrogate)| surrogate)
+    }
+
+    /// The share of the runs made since that a level calls otherwise than the model.
+    fn denied_by_later_runs(&self, surrogate: &Surrogate) -> f64 {
+        let known = surrogate.training.counts.values as usize;
+        let samples = self.evaluations.samples();
+        let later: Vec<usize> = (known..samples.len()).collect();
+        let points: Vec<&[f64]> = later.iter().map(|&i| samples.point(i)).collect();
+        let block = evaluate_points(surrogate, &Plan::new(surrogate), &points);
+        let differs = |(&i, &excess): (&usize, &f64)| {
+            (excess <= 0.0) != (self.evaluations.runs()[i].spectrum.top().excess <= 0.0)
+        };
+        let denied = later.iter().zip(&block.excess).filter(|&pair| differs(pair)).count();
+        if denied == 0 { 0.0 } else { denied as f64 / later.len() as f64 }
     }
 
     /// The result: a level, with all runs that were spent.

@@ -42,12 +42,12 @@ pub fn certify_with_model<'a>(
     }
     let plan = Plan::new(surrogate);
     let mut verdicts = Verdicts::default();
-    let failed = for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found| {
+    for_each_chunk(campaign, runs, seed, Purpose::Certification, observer, |points, found, failed| {
+        verdicts.count_failures(&surrogate_block(surrogate, &plan, failed)?);
         let block = surrogate_block(surrogate, &plan, points)?;
         verdicts.classify_strictly(found.iter().map(|run| run.spectrum.top().excess), &block);
         Ok(())
     })?;
-    verdicts.count_failures(failed);
     let summary = monte_carlo(surrogate, SURROGATE_SAMPLES, seed, observer).map_err(|error| match error {
         EvalError::Interrupted(interrupted) => ReferenceError::Run(interrupted.into()),
         other => ReferenceError::Surrogate(other),
@@ -71,7 +71,7 @@ pub fn certify_with_model<'a>(
         scheme: SCHEME.to_owned(),
         falsely_stable: counts.falsely_claimed,
         falsely_unstable: counts.falsely_denied,
-        failed,
+        failed: verdicts.failed(),
         level,
         lower,
         upper,

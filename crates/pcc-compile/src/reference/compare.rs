@@ -56,8 +56,8 @@ impl ComponentError {
 pub struct Verdicts {
     /// Points by what the surrogate says, stable, marginal or unstable, and in each by what the model says.
     counts: [[u64; 3]; 3],
-    /// Points at which the model failed: disagreement, whatever it is.
-    failed: u64,
+    /// Points at which the model failed, by what the surrogate says: disagreement, whatever it is.
+    failed: [u64; 3],
 }
 
 /// What the model says of a point.
@@ -108,14 +108,14 @@ impl Verdicts {
         model.zip(&block.excess).for_each(|(model, &excess)| self.add_strictly(excess, model));
     }
 
-    /// Counts points at which the model failed.
-    pub(super) fn count_failures(&mut self, failed: u64) {
-        self.failed += failed;
+    /// Counts points at which the model failed, with the surrogate there.
+    pub(super) fn count_failures(&mut self, block: &Block) {
+        block.excess.iter().for_each(|&excess| self.failed[class(excess)] += 1);
     }
 
     /// Points at which the model failed.
     pub fn failed(&self) -> u64 {
-        self.failed
+        self.failed.iter().sum()
     }
 
     fn surrogate(&self, class: usize) -> u64 {
@@ -130,10 +130,11 @@ impl Verdicts {
     fn discordant(&self, class: usize) -> DiscordantCounts {
         let both = self.counts[class][class];
         DiscordantCounts {
-            samples: self.counts.iter().flatten().sum::<u64>() + self.failed,
+            samples: self.counts.iter().flatten().sum::<u64>() + self.failed(),
             falsely_claimed: self.surrogate(class) - both,
             falsely_denied: self.model(class) - both,
-            unknown: self.failed,
+            claimed_unknown: self.failed[class],
+            denied_unknown: self.failed() - self.failed[class],
         }
     }
 
@@ -193,7 +194,7 @@ impl Comparison {
     }
 
     fn share(&self, hits: u64) -> f64 {
-        Proportion { hits, samples: self.samples - self.verdicts.failed }.value()
+        Proportion { hits, samples: self.samples - self.verdicts.failed() }.value()
     }
 
     /// 100 |difference of the proportions|/proportion of the model, where points at which the model failed are as far
@@ -209,7 +210,7 @@ impl Comparison {
 
     fn relative_error_of(&self, class: usize) -> Option<f64> {
         let (found, truth) = (self.verdicts.surrogate(class), self.verdicts.model(class));
-        let off = found.abs_diff(truth) + self.verdicts.failed;
+        let off = found.abs_diff(truth) + self.verdicts.failed();
         relative_error_percent((truth + off) as f64, truth as f64)
     }
 
@@ -231,7 +232,7 @@ impl Comparison {
     /// Share of points on whose stability the two disagree, or the model failed, in percent.
     pub fn misclassified_percent(&self) -> f64 {
         let judged = self.falsely_stable() + self.falsely_marginal() + self.falsely_unstable();
-        let all = judged + self.verdicts.failed;
+        let all = judged + self.verdicts.failed();
         100.0 * all as f64 / self.samples as f64
     }
 }
@@ -260,7 +261,11 @@ pub fn compare_with_model<'a>(
     let plan = Plan::new(surrogate);
     let mut comparison = Comparison::new(samples);
     let matching = Matching::new(surrogate, study.spectrum.target);
-    let failed = for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs| {
+    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |points, runs, failed| {
+        comparison.verdicts.count_failures(&surrogate_block(surrogate, &plan, failed)?);
+        if runs.is_empty() {
+            return Ok(());
+        }
         let block = surrogate_block(surrogate, &plan, points)?;
         comparison.classify(runs.iter().map(|run| Judged::of(&run.spectrum)), &block);
         comparison.rigid_body_modes = runs.first().map_or(0, |run| run.spectrum.rigid_body_modes());
@@ -268,7 +273,6 @@ pub fn compare_with_model<'a>(
         comparison.merge(errors(surrogate, &matching, &spectra, &block));
         Ok(())
     })?;
-    comparison.verdicts.count_failures(failed);
     Ok(comparison)
 }
 

@@ -70,22 +70,22 @@ pub fn check_problem(surrogate: &Surrogate, study: &Study) -> Result<(), Referen
 
 /// Runs the model at samples 0 … `samples` − 1 of the study's input space for `purpose`, for evaluation the points that
 /// [`pcc_evaluate::evaluation::monte_carlo`] takes, and gives them to `consume` chunk by chunk, in order: standardized
-/// points and runs. Returns how many runs failed, if the campaign counts them.
+/// points and runs, then the points at which runs failed, if the campaign counts those.
 pub(super) fn for_each_chunk(
     campaign: Campaign<'_>,
     samples: u64,
     seed: u64,
     purpose: Purpose,
     observer: &dyn Observer,
-    mut consume: impl FnMut(&[Vec<f64>], &[Run]) -> Result<(), ReferenceError>,
-) -> Result<u64, ReferenceError> {
+    mut consume: impl FnMut(&[Vec<f64>], &[Run], &[Vec<f64>]) -> Result<(), ReferenceError>,
+) -> Result<(), ReferenceError> {
     if samples == 0 {
         return Err(ReferenceError::NoSamples);
     }
     let study = campaign.study;
     // Whether a system is stable takes no numbers of modes.
     let mut runner = Runner::new(campaign)?.without_ranks();
-    let (mut rigid_body_modes, mut failed) = (usize::MAX, 0);
+    let mut rigid_body_modes = usize::MAX;
     observer.begin("model runs", samples);
     for start in (0..samples).step_by(CHUNK as usize) {
         let standardized: Vec<Vec<f64>> = (start..samples.min(start + CHUNK))
@@ -100,16 +100,21 @@ pub(super) fn for_each_chunk(
             true => runner.run_counting(&physical, observer)?,
             false => runner.run(&physical, observer)?.into_iter().map(Some).collect(),
         };
-        let answered = standardized.into_iter().zip(found).filter_map(|(point, run)| Some((point, run?)));
-        let (points, mut runs): (Vec<Vec<f64>>, Vec<Run>) = answered.unzip();
-        failed += (physical.len() - points.len()) as u64;
-        rigid_body_modes = agree_on_rigid_body_motion(&mut runs, rigid_body_modes);
-        if !runs.is_empty() {
-            consume(&points, &runs)?;
+        let (mut points, mut runs, mut failed) = (Vec::new(), Vec::new(), Vec::new());
+        for (point, run) in standardized.into_iter().zip(found) {
+            match run {
+                Some(run) => {
+                    points.push(point);
+                    runs.push(run);
+                }
+                None => failed.push(point),
+            }
         }
+        rigid_body_modes = agree_on_rigid_body_motion(&mut runs, rigid_body_modes);
+        consume(&points, &runs, &failed)?;
     }
     observer.finish();
-    Ok(failed)
+    Ok(())
 }
 
 /// The surrogate at these standardized points, all of its values finite.
@@ -158,7 +163,7 @@ pub fn monte_carlo<'a>(
     let mut reference: Option<(Reference, Ranks)> = None;
     // A share of the model's own takes all runs.
     let campaign = Campaign { counts_failures: false, ..campaign };
-    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs| {
+    for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs, _| {
         let (reference, ranks) = reference.get_or_insert_with(|| {
             let ranks = Ranks::of(campaign.study, runs.first());
             let outputs = mode_outputs(ranks.modes());

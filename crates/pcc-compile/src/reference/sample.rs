@@ -64,7 +64,7 @@ impl<'a> ModelSample<'a> {
             judged: Vec::new(),
             rigid_body_modes: 0,
         };
-        for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs| {
+        for_each_chunk(campaign, samples, seed, Purpose::Evaluation, observer, |_, runs, _| {
             let ranks = ranks.get_or_insert_with(|| {
                 let ranks = Ranks::of(study, runs.first());
                 sample.eigenvalues = vec![Vec::new(); ranks.modes().len()];

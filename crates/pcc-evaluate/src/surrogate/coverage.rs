@@ -30,6 +30,18 @@ impl Coverage {
         unanswered <= answered * CAUTION.powf(2.0 / point.len().max(1) as f64)
     }
 
+    /// The share of the domain where runs fail that these runs do not foretell: those that failed and, left out, would
+    /// not be counted as possibly unanswered, plus one standard deviation of their number.
+    pub fn unforeseen(&self) -> f64 {
+        let is_unforeseen = |k: usize| {
+            let mut others = self.unanswered.clone();
+            let left_out = others.swap_remove(k);
+            !Self { answered: self.answered.clone(), unanswered: others }.may_be_unanswered(&left_out)
+        };
+        let count = (0..self.unanswered.len()).filter(|&k| is_unforeseen(k)).count() as f64;
+        (count + count.sqrt()) / (self.answered.len() + self.unanswered.len()) as f64
+    }
+
     /// For every input the smallest and the largest value at runs that failed.
     pub fn ranges(&self) -> Vec<[f64; 2]> {
         let inputs = self.unanswered.first().map_or(0, Vec::len);
@@ -57,5 +69,9 @@ mod tests {
         // In two variables balls of four times the volume have twice the radius.
         assert!(coverage.may_be_unanswered(&[-0.16, 0.0]) && !coverage.may_be_unanswered(&[-0.18, 0.0]));
         assert_eq!(coverage.ranges(), [[0.5, 0.9], [0.0, 0.4]]);
+        // Each of the two foretells the other.
+        assert_eq!(coverage.unforeseen(), 0.0);
+        let alone = Coverage { unanswered: vec![vec![0.5, 0.0]], ..coverage };
+        assert_eq!(alone.unforeseen(), 1.0);
     }
 }

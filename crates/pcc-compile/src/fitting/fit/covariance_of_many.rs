@@ -83,8 +83,8 @@ fn put(matrix: &mut DMatrix<f64>, block: &DMatrix<f64>, at: (usize, usize)) {
 
 /// Sums over blocks of G_ab K_ab, by the factor that an input has in them.
 struct BlockSums {
-    /// Blocks of values and derivatives by this input, then of derivatives by it and by later, by earlier inputs, and by
-    /// itself.
+    /// Blocks of values and derivatives by this input, then of derivatives by it and by later, by earlier inputs, and
+    /// by itself.
     own: Vec<[DMatrix<f64>; 4]>,
     /// All blocks of values and derivatives, and all of derivatives.
     all: [DMatrix<f64>; 2],

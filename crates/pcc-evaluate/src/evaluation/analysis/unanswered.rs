@@ -15,7 +15,7 @@ use crate::surrogate::{Coverage, Surrogate};
 const LEVEL: f64 = 0.95;
 
 /// Samples by what is known of them. See [`Coverage`] for what counts as unanswered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Unanswered {
     /// All of them.
     pub samples: u64,
@@ -27,6 +27,9 @@ pub struct Unanswered {
     pub stable: u64,
     /// Of the others, those that are unstable.
     pub unstable: u64,
+    /// Share of all samples that is unanswered besides, because failures are not where others are
+    /// ([`Coverage::unforeseen`]).
+    pub unforeseen: f64,
 }
 
 impl Unanswered {
@@ -45,10 +48,15 @@ impl Unanswered {
         self.bounds(self.unstable)
     }
 
-    /// The known samples alone, and with all that are not known; the ends as far out as so many samples leave open.
+    /// The known samples alone, less what is unforeseen, and with all that are not known; the ends as far out as so
+    /// many samples leave open.
     fn bounds(&self, known: u64) -> Interval {
         let wilson = |hits: u64| Proportion { hits, samples: self.samples }.wilson(LEVEL);
-        Interval { lower: wilson(known).lower, upper: wilson(known + self.unknown).upper, level: LEVEL }
+        Interval {
+            lower: (wilson(known).lower - self.unforeseen).max(0.0),
+            upper: (wilson(known + self.unknown).upper + self.unforeseen).min(1.0),
+            level: LEVEL,
+        }
     }
 
     fn merge(&mut self, other: &Self) {
@@ -71,7 +79,7 @@ pub(crate) fn unanswered_in(
 ) -> Result<Unanswered, EvalError> {
     let plan = Plan::new(surrogate);
     let dimension = surrogate.inputs.dimension();
-    let mut found = Unanswered::default();
+    let mut found = Unanswered { unforeseen: coverage.unforeseen(), ..Unanswered::default() };
     in_chunks(
         samples,
         CHUNK,

@@ -35,7 +35,8 @@ const ERROR_SHARE_OF_SURROGATE: f64 = 0.02;
 /// ```
 /// use pcc_evaluate::probability::statistics::{DiscordantCounts, Proportion};
 /// let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-/// let counts = DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 0, unknown: 0 };
+/// let counts =
+///     DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 0, claimed_unknown: 0, denied_unknown: 0 };
 /// let bound = counts.bound(surrogate, 0.95);
 /// assert!(bound.lower > 0.36 && bound.upper < 0.42);
 /// ```
@@ -47,8 +48,10 @@ pub struct DiscordantCounts {
     pub falsely_claimed: u64,
     /// Number of points that the model counts and the surrogate does not.
     pub falsely_denied: u64,
-    /// Number of points at which the model failed: any of the two, or none.
-    pub unknown: u64,
+    /// Number of points at which the model failed, and which the surrogate counts: falsely claimed, or not.
+    pub claimed_unknown: u64,
+    /// Number of points at which the model failed, and which the surrogate does not count: falsely denied, or not.
+    pub denied_unknown: u64,
 }
 
 impl DiscordantCounts {
@@ -75,10 +78,9 @@ impl DiscordantCounts {
         let alpha = 1.0 - level;
         let discordant =
             |hits| Proportion { hits, samples: self.samples }.clopper_pearson(1.0 - ERROR_SHARE_OF_DISCORDANCE * alpha);
-        let [claimed, denied] = [self.falsely_claimed, self.falsely_denied].map(|known| {
-            let most = known + self.unknown;
-            [discordant(known).lower, discordant(most).upper]
-        });
+        let counts = [(self.falsely_claimed, self.claimed_unknown), (self.falsely_denied, self.denied_unknown)];
+        let [claimed, denied] =
+            counts.map(|(known, unknown)| [discordant(known).lower, discordant(known + unknown).upper]);
         let stable = surrogate.clopper_pearson(1.0 - ERROR_SHARE_OF_SURROGATE * alpha);
         Interval {
             lower: (stable.lower - claimed[1] + denied[0]).clamp(0.0, 1.0),
@@ -114,12 +116,18 @@ mod tests {
     #[test]
     fn failures_widen_the_bound_to_either_side() {
         let surrogate = Proportion { hits: 600_000, samples: 1_000_000 };
-        let counts = |unknown| DiscordantCounts { samples: 300, falsely_claimed: 2, falsely_denied: 3, unknown };
-        let [all_answered, some_failed] = [counts(0), counts(60)].map(|counts| counts.bound(surrogate, LEVEL));
-        assert!(some_failed.lower < all_answered.lower - 0.2 && some_failed.upper > all_answered.upper + 0.2);
+        let counts = |claimed_unknown, denied_unknown| DiscordantCounts {
+            samples: 300,
+            falsely_claimed: 2,
+            falsely_denied: 3,
+            claimed_unknown,
+            denied_unknown,
+        };
+        let [all_answered, some_failed] = [counts(0, 0), counts(20, 40)].map(|counts| counts.bound(surrogate, LEVEL));
+        assert!(some_failed.lower < all_answered.lower - 0.05 && some_failed.upper > all_answered.upper + 0.1);
         // Whatever the failed points are.
-        for (claimed, denied) in [(62, 3), (2, 63), (32, 33)] {
-            let known = DiscordantCounts { samples: 300, falsely_claimed: claimed, falsely_denied: denied, unknown: 0 };
+        for (claimed, denied) in [(22, 3), (2, 43), (22, 43), (12, 23)] {
+            let known = DiscordantCounts { falsely_claimed: claimed, falsely_denied: denied, ..counts(0, 0) };
             let bound = known.bound(surrogate, LEVEL);
             assert!(some_failed.lower <= bound.lower && bound.upper <= some_failed.upper);
         }
@@ -135,7 +143,13 @@ mod tests {
         let mut evaluation = Stream::new(7, Purpose::Evaluation, repeat);
         let hits = (0..surrogate_samples).filter(|_| evaluation.next_unit() < truth.surrogate()).count() as u64;
         let mut certification = Stream::new(7, Purpose::Certification, repeat);
-        let mut seen = DiscordantCounts { samples: fresh, falsely_claimed: 0, falsely_denied: 0, unknown: 0 };
+        let mut seen = DiscordantCounts {
+            samples: fresh,
+            falsely_claimed: 0,
+            falsely_denied: 0,
+            claimed_unknown: 0,
+            denied_unknown: 0,
+        };
         for _ in 0..fresh {
             let unit = certification.next_unit();
             if unit < truth.falsely_claimed {
@@ -175,8 +189,14 @@ mod tests {
     #[test]
     fn no_disagreement_leaves_the_width_of_what_may_have_been_missed() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 100, falsely_claimed: 0, falsely_denied: 0, unknown: 0 }
-            .bound(surrogate, LEVEL);
+        let bound = DiscordantCounts {
+            samples: 100,
+            falsely_claimed: 0,
+            falsely_denied: 0,
+            claimed_unknown: 0,
+            denied_unknown: 0,
+        }
+        .bound(surrogate, LEVEL);
         // One-sided 0.245 α of 100 points without a hit: 1 − (0.245 · 0.05)^(1/100).
         let missed = 1.0 - (0.245f64 * 0.05).powf(0.01);
         let own = surrogate.clopper_pearson(0.999);
@@ -187,19 +207,37 @@ mod tests {
     #[test]
     fn disagreement_shifts_the_bound_to_the_side_of_the_model() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let optimistic = DiscordantCounts { samples: 500, falsely_claimed: 60, falsely_denied: 0, unknown: 0 }
-            .bound(surrogate, LEVEL);
+        let optimistic = DiscordantCounts {
+            samples: 500,
+            falsely_claimed: 60,
+            falsely_denied: 0,
+            claimed_unknown: 0,
+            denied_unknown: 0,
+        }
+        .bound(surrogate, LEVEL);
         assert!(optimistic.lower < 0.28 && 0.28 < optimistic.upper && optimistic.upper < 0.4, "{optimistic:?}");
-        let pessimistic = DiscordantCounts { samples: 500, falsely_claimed: 0, falsely_denied: 60, unknown: 0 }
-            .bound(surrogate, LEVEL);
+        let pessimistic = DiscordantCounts {
+            samples: 500,
+            falsely_claimed: 0,
+            falsely_denied: 60,
+            claimed_unknown: 0,
+            denied_unknown: 0,
+        }
+        .bound(surrogate, LEVEL);
         assert!(pessimistic.upper > 0.52 && 0.52 > pessimistic.lower && pessimistic.lower > 0.4, "{pessimistic:?}");
     }
 
     #[test]
     fn a_perfect_surrogate_says_more_than_the_model_runs_alone() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound = DiscordantCounts { samples: 300, falsely_claimed: 0, falsely_denied: 0, unknown: 0 }
-            .bound(surrogate, LEVEL);
+        let bound = DiscordantCounts {
+            samples: 300,
+            falsely_claimed: 0,
+            falsely_denied: 0,
+            claimed_unknown: 0,
+            denied_unknown: 0,
+        }
+        .bound(surrogate, LEVEL);
         let alone = Proportion { hits: 120, samples: 300 }.clopper_pearson(LEVEL);
         assert!(width(bound) < 0.4 * width(alone), "{bound:?}, {alone:?}");
     }
@@ -208,8 +246,14 @@ mod tests {
     fn bound_stays_within_zero_and_one() {
         for hits in [0, 1_000_000] {
             let surrogate = Proportion { hits, samples: 1_000_000 };
-            let bound = DiscordantCounts { samples: 50, falsely_claimed: 5, falsely_denied: 5, unknown: 0 }
-                .bound(surrogate, LEVEL);
+            let bound = DiscordantCounts {
+                samples: 50,
+                falsely_claimed: 5,
+                falsely_denied: 5,
+                claimed_unknown: 0,
+                denied_unknown: 0,
+            }
+            .bound(surrogate, LEVEL);
             assert!(0.0 <= bound.lower && bound.lower <= bound.upper && bound.upper <= 1.0, "{bound:?}");
         }
     }
@@ -217,8 +261,14 @@ mod tests {
     #[test]
     fn nothing_is_known_without_fresh_points() {
         let surrogate = Proportion { hits: 400_000, samples: 1_000_000 };
-        let bound =
-            DiscordantCounts { samples: 0, falsely_claimed: 0, falsely_denied: 0, unknown: 0 }.bound(surrogate, LEVEL);
+        let bound = DiscordantCounts {
+            samples: 0,
+            falsely_claimed: 0,
+            falsely_denied: 0,
+            claimed_unknown: 0,
+            denied_unknown: 0,
+        }
+        .bound(surrogate, LEVEL);
         assert_eq!((bound.lower, bound.upper), (0.0, 1.0));
     }
 }
