@@ -53,12 +53,22 @@ impl From<csv::Error> for PointsError {
 pub(super) struct PointsReport {
     pub points: u64,
     pub stable_points: u64,
+    /// Points whose nearest run of the design failed; absent if none did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unanswered_points: Option<u64>,
     pub file: String,
 }
 
 impl fmt::Display for PointsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} points, {} of them stable, written to {}", self.points, self.stable_points, self.file)
+        writeln!(f, "{} points, {} of them stable, written to {}", self.points, self.stable_points, self.file)?;
+        match self.unanswered_points.filter(|&count| count > 0) {
+            Some(count) => writeln!(
+                f,
+                "\nwarning: the model did not answer near {count} of them; there the surrogate extrapolates"
+            ),
+            None => Ok(()),
+        }
     }
 }
 

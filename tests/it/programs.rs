@@ -554,6 +554,9 @@ fn failures_count_as_disagreement_both_ways_if_asked_for() {
     fs::write(folder.path().join("before.sh"), fails).unwrap();
     let said = output(folder.path(), &["build", "study.toml"]);
     assert!(said.contains("did not answer in"), "{said}");
+    fs::write(folder.path().join("in.csv"), "mu,k\n0.1,1.5\n0.49,1.5\n").unwrap();
+    let said = output(folder.path(), &["eval", "program.pcc", "--points", "in.csv", "--out", "out.csv"]);
+    assert!(said.contains("warning: the model did not answer near 1 of them"), "{said}");
     let certify = ["certify", "program.pcc", "--study", "study.toml", "-m", "40"];
     let ends_at_the_first = |arguments: &[&str]| {
         let ended = pcc(folder.path(), arguments);

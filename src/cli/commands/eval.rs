@@ -16,6 +16,7 @@ use pcc_evaluate::foundation::{InstructionSet, save};
 use pcc_evaluate::session::{Request, Session, SessionError};
 use pcc_evaluate::shard_file::MARK;
 use pcc_evaluate::surrogate::Surrogate;
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -160,13 +161,23 @@ fn at_points(
 ) -> anyhow::Result<PointsReport> {
     let plan = Plan::new(surrogate);
     let file = PointsFile::open(points, &surrogate.inputs, extrapolate)?;
+    let unanswered = Cell::new(0);
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
         let standardized: Vec<Vec<f64>> = group.iter().map(|point| surrogate.inputs.standardized(point)).collect();
+        if let Some(coverage) = &surrogate.coverage {
+            let count = standardized.iter().filter(|point| coverage.is_unanswered(point)).count();
+            unanswered.set(unanswered.get() + count as u64);
+        }
         let references: Vec<&[f64]> = standardized.iter().map(Vec::as_slice).collect();
         let block = evaluate_points(surrogate, &plan, &references);
         let eigenvalues = |i: usize| block.eigenvalues.iter().map(|mode| mode[i]).collect();
         let results = (0..group.len()).map(|i| (eigenvalues(i), block.top(i))).collect();
         Ok(Evaluated { labels: surrogate.labels(), results })
     })?;
-    Ok(PointsReport { points: count, stable_points: stable, file: out.display().to_string() })
+    Ok(PointsReport {
+        points: count,
+        stable_points: stable,
+        unanswered_points: surrogate.coverage.as_ref().map(|_| unanswered.get()),
+        file: out.display().to_string(),
+    })
 }
