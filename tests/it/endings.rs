@@ -110,13 +110,12 @@ fn the_belt_as_a_noisy_program_ends_with_a_sentence() {
 
 #[test]
 fn the_clutch_as_a_noisy_program_needs_about_as_many_runs() {
-    for (inputs, seeds) in [(3, 1..=3), (8, 1..=1)] {
-        for seed in seeds {
-            let study = without_derivatives(&text(&format!("surrogates/clutch-r{inputs}.toml")), seed);
-            let ([exact, noisy], [without, with], _) = compared(&study, Noise::Relative(1e-8));
-            assert!((exact - noisy).abs() <= 1e-3 * exact, "r = {inputs}: {noisy}, not {exact}");
-            assert!(with as f64 <= 1.3 * without as f64, "r = {inputs}: {with} runs, not {without}");
-        }
+    // Eight inputs take half a minute: tools/src/bin/noisy_clutch.rs.
+    for seed in 1..=3 {
+        let study = without_derivatives(&text("surrogates/clutch-r3.toml"), seed);
+        let ([exact, noisy], [without, with], _) = compared(&study, Noise::Relative(1e-8));
+        assert!((exact - noisy).abs() <= 1e-3 * exact, "{noisy}, not {exact}");
+        assert!(with as f64 <= 1.3 * without as f64, "{with} runs, not {without}");
     }
 }
 
