@@ -17,9 +17,9 @@ const PATIENCE: usize = 4;
 const GROWTH: usize = 2;
 
 /// Work of fits ([`super::components::ComponentFit::work`]) after which no further level is begun, if the model is one
-/// that `pcc` computes and the study does not say how many runs it is worth: some twenty seconds of one processor. A
+/// that `pcc` computes and the study does not say how many runs it is worth: about ten seconds of one processor. A
 /// run of such a model takes less than one.
-const MOST_WORK: u64 = 20_000_000_000;
+const MOST_WORK: u64 = 12_000_000_000;
 
 /// Levels that are fitted whatever they cost: a first one is not judged, and groups change.
 const LEAST_LEVELS: usize = 2;
