@@ -112,7 +112,8 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
         "fits-cost-more" => {
             "because fits take far longer than the runs of this model; set design.maximum to let it go on"
         }
-        _ => "because it was stopped",
+        "interrupted" => "because it was stopped",
+        other => other,
     };
     format!("the build ended after {runs} model runs{best} {why}")
 }

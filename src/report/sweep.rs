@@ -56,8 +56,8 @@ pub struct SweepReport {
     /// do not hold.
     pub max_re_residuals: Vec<QuantileReport>,
     /// What to know of a surrogate whose model did not answer everywhere; absent if it did.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unanswered: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Files that were written.
     #[serde(skip)]
     pub files: Vec<String>,
@@ -137,7 +137,7 @@ impl SweepReport {
             max_re_residuals: residuals.iter().map(|q| QuantileReport { level: q.level, value: q.value }).collect(),
             files: Vec::new(),
             merged_parts: found.merged_parts,
-            unanswered: super::coverage::warning(found.surrogate),
+            warnings: super::coverage::warning(found.surrogate).into_iter().collect(),
             elapsed_seconds: found.elapsed_seconds,
         }
     }
@@ -233,7 +233,7 @@ impl fmt::Display for SweepReport {
             2 => self.write_map(f)?,
             _ => writeln!(f, "{}from, to: 95 % sampling interval", self.table())?,
         }
-        self.unanswered.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))?;
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))?;
         match self.files.is_empty() {
             true => Ok(()),
             false => writeln!(f, "\nwritten to {}", self.files.join(", ")),

@@ -21,7 +21,8 @@ impl Model for Failing {
     }
 }
 
-const STUDY: &str = r#"
+/// Programs that may fail, with two inputs.
+pub(crate) const STUDY: &str = r#"
     format = 1
     name = "failing"
     [model]

@@ -1,6 +1,7 @@
 //! Builds end: of models whose answers carry noise, like programs with a finite tolerance or few printed digits, of
 //! models with many inputs, and of those that the user stops. They say why, and give the share that is known.
 
+use crate::coverage;
 use crate::support::{repository, text};
 use num_complex::Complex;
 use pcc::report::FitReport;
@@ -175,20 +176,6 @@ fn designs_of_any_number_of_inputs_have_two_levels() {
     assert_eq!(small.design.initial, 6, "what there may be at most is halved");
 }
 
-/// Two modes, one of which can grow; nobody fails.
-const PROGRAM: &str = r#"
-    format = 1
-    name = "program"
-    [model]
-    kind = "command"
-    command = ["none"]
-    eigenvalues = 1
-    on_failure = "skip"
-    [inputs]
-    a = { distribution = "uniform", lower = 0.0, upper = 1.0 }
-    b = { distribution = "uniform", lower = -1.0, upper = 1.0 }
-"#;
-
 /// Re λ has four waves over the range of a, more than the first designs can follow.
 struct Wavy;
 
@@ -201,7 +188,7 @@ impl Model for Wavy {
 /// Runs that were not made because the user stopped are no failures.
 #[test]
 fn a_build_that_is_stopped_between_runs_has_no_failures() {
-    let study = Study::from_toml(PROGRAM).unwrap();
+    let study = Study::from_toml(coverage::STUDY).unwrap();
     let impatient = Impatient { levels: AtomicUsize::new(1), takes_what_there_is: true };
     let surrogate = build_with(&study, Box::new(Wavy), &impatient).unwrap();
     assert_eq!((surrogate.coverage.clone(), surrogate.training.counts.failed), (None, 0));
@@ -212,7 +199,7 @@ fn a_build_that_is_stopped_between_runs_has_no_failures() {
 #[test]
 fn what_small_designs_cannot_follow_is_not_estimated_away() {
     for seed in 1..=3 {
-        let study = Study { seed, ..Study::from_toml(PROGRAM).unwrap() };
+        let study = Study { seed, ..Study::from_toml(coverage::STUDY).unwrap() };
         let surrogate = build_with(&study, Box::new(Wavy), &Silent).unwrap();
         let truth = (0..100_000).filter(|i| {
             let a = (f64::from(*i) + 0.5) * 1e-5;

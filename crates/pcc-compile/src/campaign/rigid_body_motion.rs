@@ -89,18 +89,18 @@ impl Structure {
 
 /// The least number of eigenvalues that are zero by structure at some random points; no limit, if it is not known.
 fn zeros(study: &Study, model: &dyn Model) -> usize {
-    let at_point = |index: u64| {
-        let Linearization { state_matrix, second_order, .. } = system(study, model, index)?;
-        if state_matrix.nrows() > LARGE && index >= POINTS_OF_LARGE {
-            return None;
-        }
+    let mut least = usize::MAX;
+    for index in 0..STRUCTURE_POINTS {
+        let Some(Linearization { state_matrix, second_order, .. }) = system(study, model, index) else { continue };
+        let is_large = state_matrix.nrows() > LARGE;
         let most = zero_eigenvalues(state_matrix);
-        match second_order.filter(|_| most > 0) {
-            Some(system) => Some(free_motion(&system, most).unwrap_or(most)),
-            None => Some(most),
+        let found = second_order.filter(|_| most > 0).and_then(|system| free_motion(&system, most));
+        least = least.min(found.unwrap_or(most));
+        if least == 0 || (is_large && index + 1 >= POINTS_OF_LARGE) {
+            break;
         }
-    };
-    (0..STRUCTURE_POINTS).filter_map(at_point).min().unwrap_or(usize::MAX)
+    }
+    least
 }
 
 /// The model at the point of this number, if it has matrices.

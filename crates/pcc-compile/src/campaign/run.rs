@@ -66,8 +66,8 @@ pub enum RunError {
     },
     /// Answers are missing, and the model is not to be run.
     #[error(
-        "pcc does not run this model here, and {missing} points of the design are not answered yet: write them to a table with pcc design STUDY --emit ROWS.csv, run \
-         them, and hand the answers over with pcc ingest STUDY RESULTS.csv"
+        "pcc does not run this model here, and {missing} points of the design are not answered yet: write them to a table \
+         with pcc design STUDY --emit ROWS.csv, run them, and hand the answers over with pcc ingest STUDY RESULTS.csv"
     )]
     Unanswered {
         /// Number of points without an answer.

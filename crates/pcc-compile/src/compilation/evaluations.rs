@@ -218,7 +218,7 @@ impl<'a> Evaluations<'a> {
     pub fn coverage(&self) -> Option<Coverage> {
         let (points, mut answered, mut unanswered) = (self.points(), Vec::new(), Vec::new());
         for i in 0..self.tried {
-            let runs = if self.answered.contains(&i) { &mut answered } else { &mut unanswered };
+            let runs = if self.answered.binary_search(&i).is_ok() { &mut answered } else { &mut unanswered };
             runs.push(points.point(i).to_vec());
         }
         (self.failed() > 0).then_some(Coverage { answered, unanswered })

@@ -6,10 +6,9 @@ use super::{v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
-use crate::surrogate::Coverage;
 use crate::surrogate::{
-    Band, Certificate, Counts, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest, Setting,
-    SettingValue, StopReason, Surrogate, Training, VerdictBasis,
+    Band, Certificate, Counts, Coverage, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest,
+    Setting, SettingValue, StopReason, Surrogate, Training, VerdictBasis,
 };
 
 /// Degrees above this are refused, so that a forged index cannot exhaust memory.

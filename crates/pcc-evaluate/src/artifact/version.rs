@@ -29,9 +29,9 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
     let bounds_all =
         surrogate.certificates.iter().any(|certificate| certificate.marginal.is_some() || certificate.failed > 0);
-    let has_floor = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
+    let has_stalled = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
     let has_verdict = surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default();
-    match has_verdict || bounds_all || has_floor || surrogate.coverage.is_some() {
+    match has_verdict || bounds_all || has_stalled || surrogate.coverage.is_some() {
         true => 3,
         false if needs_2 => 2,
         false => u16::from(has_clusters),

@@ -110,8 +110,6 @@ fn better(
     (smooth, minimum_norm): (Fitted, minimum_norm::Previous),
     observer: &dyn Observer,
 ) -> Result<MethodFit, Interrupted> {
-    let fewer = minimum_norm::fewer_derivatives(response, tables.inputs());
-    let response = Response { gradients: fewer.as_ref().or(response.gradients), ..response };
     let mut previous = Previous { minimum_norm, ..*previous };
     if !previous.tries_pursuit || smooth.errors.is_none() {
         return Ok((smooth, minimum_norm::METHOD.name, previous));

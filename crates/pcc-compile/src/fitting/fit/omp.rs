@@ -19,6 +19,7 @@
 
 use super::cross_validation::{CrossValidation, Problem};
 use super::method::{Entry, FitMethod, FitSize, MAX_DEGREE, MethodFit, Previous, Profile, S2_TARGET, Smooth, Solver};
+use super::minimum_norm::fewer_derivatives;
 use super::pursuit_path::Path;
 use super::{BlindResiduals, Fitted, WEIGHTS};
 use crate::fitting::regression::{ActiveBasis, BasisTables, ErrorMeasures, Response};
@@ -158,6 +159,8 @@ pub fn fit(
     settings: &Smooth,
     observer: &dyn Observer,
 ) -> Result<Fitted, Interrupted> {
+    let fewer = fewer_derivatives(response, tables.inputs());
+    let response = Response { gradients: fewer.as_ref().or(response.gradients), ..response };
     let Some(variance) = response.variance() else {
         return Ok(Fitted::constant(tables.inputs(), response.values));
     };

@@ -18,8 +18,9 @@ use pcc_evaluate::foundation::{Interrupted, Observer};
 /// of their number.
 const MOST_EQUATIONS: usize = 450;
 
-/// Equations times inputs at most, as their products cost as much, but for so many runs with derivatives. Three runs
-/// per parameter of the prior gave the same S² for 20 and 30 inputs, in ten times the time.
+/// Equations times inputs at most, as their products cost as much, but for so many runs with derivatives. Of a chain
+/// with 20 inputs, the search on 21 of 40 runs took a quarter of the time of that on all, and left the S² of the worst
+/// component at 0.94, not 0.96.
 const MOST_PRODUCTS: usize = 9_000;
 const FEWEST_RUNS: usize = 3;
 
