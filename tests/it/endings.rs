@@ -264,3 +264,17 @@ fn noise_that_a_study_states_tells_constants_and_zeros() {
         assert!(refused.to_string().contains("spectrum.noise"), "{refused}");
     }
 }
+
+/// Answers with few digits tell how far off they are, so that what varies in the last digit alone is a constant.
+#[test]
+fn printed_digits_are_the_noise_of_a_program_that_rounds() {
+    let study = without_derivatives(BELT, 1);
+    let stop = |surrogate: &Surrogate, name: &str| {
+        let component = surrogate.components().into_iter().find(|component| component.name == name).unwrap().id;
+        surrogate.fit_of(component).stop
+    };
+    let rounded = built(&study, Noise::Printed(8));
+    assert_eq!(stop(&rounded, "re_s_1_2"), StopReason::Constant);
+    let noisy = built(&study, Noise::Relative(1e-8));
+    assert_ne!(stop(&noisy, "re_s_1_2"), StopReason::Constant, "a program that prints everything does not tell");
+}

@@ -26,7 +26,7 @@ pub enum RunError {
         cause: ModelError,
     },
     /// Its eigenvalues cannot be sorted into modes, or a mode of `spectrum.modes` is missing.
-    #[error("spectrum.modes: {cause}; found at {point}")]
+    #[error("{cause}; found at {point}")]
     Spectrum {
         /// Where.
         point: String,

@@ -216,7 +216,8 @@ impl<'a> GroupFits<'a> {
         })
     }
 
-    /// Differences of each component up to this size are rounding, or the noise that the study says.
+    /// Differences of each component up to this size are rounding, or the noise that the study or the digits of the
+    /// answers say.
     fn resolutions(
         &self,
         output: &Output,
@@ -225,7 +226,8 @@ impl<'a> GroupFits<'a> {
         followed: &Followed<'_>,
     ) -> Vec<f64> {
         let rule = resolutions(output, followed.runs);
-        match self.study.spectrum.noise > 0.0 {
+        let are_noisy = self.study.spectrum.noise > 0.0 || followed.runs.iter().all(|run| run.spectrum.is_rounded());
+        match are_noisy {
             true => {
                 let known = largest_errors(group, eigenvalues, followed);
                 rule.into_iter().zip(known).map(|(rule, known)| rule.max(known)).collect()

@@ -10,6 +10,7 @@ mod groups;
 mod labels;
 mod modes;
 mod nearest;
+mod printed_digits;
 mod refinement;
 mod solution;
 mod target;

@@ -1,5 +1,6 @@
 //! From eigenvalues to numbered modes.
 
+use super::printed_digits::printed_errors;
 use super::solution::without_smallest;
 use crate::numerics::accuracy::Accuracy;
 use nalgebra::Complex;
@@ -34,7 +35,7 @@ pub enum SpectrumError {
     OnlyRigid,
     /// The study says how much is rigid-body motion, and the spectrum says otherwise.
     #[error(
-        "rigid_body_modes = {stated}, but {found}; {stated} eigenvalues are to be zero and no more: correct the number, or \
+        "spectrum.rigid_body_modes = {stated}, but {found}; {stated} eigenvalues are to be zero and no more: correct the number, or \
          leave it out, so that it is found by structure"
     )]
     RigidBodyModes {
@@ -44,7 +45,9 @@ pub enum SpectrumError {
         found: String,
     },
     /// A mode was asked for that does not exist.
-    #[error("mode {mode} was asked for, but only {count} modes oscillate; modes are numbered by frequency from 1")]
+    #[error(
+        "spectrum.modes: mode {mode} was asked for, but only {count} modes oscillate; modes are numbered by frequency from 1"
+    )]
     NoSuchMode {
         /// Rank asked for, from 1.
         mode: usize,
@@ -75,6 +78,8 @@ pub struct Spectrum {
     margin: Margin,
     /// Error of each eigenvalue at least, as a share of |λ|.
     noise: f64,
+    /// Whether the eigenvalues were rounded to few digits.
+    is_rounded: bool,
     eigenvalues: Vec<Complex<f64>>,
     accuracies: Vec<Accuracy>,
     oscillating: Vec<Complex<f64>>,
@@ -154,10 +159,13 @@ impl Spectrum {
         let least = Accuracy::least(largest);
         // First-order bounds of eigenvalues that are nearly defective say nothing.
         let meaningful = |error: f64, size: f64| error <= KNOWN * size || error <= KNOWN_BESIDE * largest;
+        let printed = if all_accuracies.is_empty() { printed_errors(&all) } else { None };
         let accuracy = |at: usize| {
             let Accuracy { re, whole } = all_accuracies.get(at).copied().unwrap_or(least);
             let or_least = |error: f64| if meaningful(error, sizes[at]) { error } else { least.whole };
-            let known = [or_least(re), or_least(whole)].map(|error| error.max(noise * sizes[at]));
+            let rounded = printed.as_ref().map_or(Accuracy::default(), |errors| errors[at]);
+            let known = [or_least(re).max(rounded.re), or_least(whole).max(rounded.whole)]
+                .map(|error| error.max(noise * sizes[at]));
             Accuracy { re: known[0], whole: known[1] }
         };
         let one = |at: usize| Eigenvalue::new(all[at], sizes[at], accuracy(at));
@@ -206,6 +214,7 @@ impl Spectrum {
             rigid_body_modes,
             margin,
             noise,
+            is_rounded: printed.is_some(),
             top,
             largest,
         })
@@ -308,6 +317,11 @@ impl Spectrum {
         self.accuracies[position] != Accuracy::least(self.largest)
     }
 
+    /// Whether the eigenvalues came with so few digits that they tell how far off they may be.
+    pub fn is_rounded(&self) -> bool {
+        self.is_rounded
+    }
+
     /// Spectral abscissa max Re λ over every eigenvalue that is not a rigid-body zero, real ones included, in 1/s.
     pub fn max_re(&self) -> f64 {
         self.top.max_re
@@ -328,13 +342,14 @@ impl Spectrum {
         all().all(mirrors)
     }
 
-    /// The largest error of a growth rate that cannot be told from zero, in 1/s, if there is one that decides.
+    /// The largest error of an excess that cannot be told from zero, in 1/s, if there is one that decides.
     pub fn marginal_error(&self) -> Option<f64> {
+        let error = |accuracy: &Accuracy| error_of_excess(self.margin, accuracy);
         let is_marginal = |lambda: &Complex<f64>, accuracy: &Accuracy| {
-            beyond_rounding(self.margin.excess(*lambda), accuracy.re) == 0.0
+            beyond_rounding(self.margin.excess(*lambda), error(accuracy)) == 0.0
         };
         let decides = self.eigenvalues.iter().zip(&self.accuracies).filter(|(lambda, own)| is_marginal(lambda, own));
-        decides.map(|(_, accuracy)| accuracy.re).reduce(f64::max).filter(|_| self.top.excess == 0.0)
+        decides.map(|(_, accuracy)| error(accuracy)).reduce(f64::max).filter(|_| self.top.excess == 0.0)
     }
 }
 
@@ -361,11 +376,19 @@ impl Eigenvalue {
 
 /// What decides, and by how much: nothing, where that is less than the accuracy of its growth rate.
 fn top(eigenvalues: &[Eigenvalue], margin: Margin) -> Option<Top> {
-    let excess = |one: &Eigenvalue| beyond_rounding(margin.excess(one.lambda), one.accuracy.re);
+    let excess = |one: &Eigenvalue| beyond_rounding(margin.excess(one.lambda), error_of_excess(margin, &one.accuracy));
     let larger = |a: Eigenvalue, b: Eigenvalue| if excess(&b) > excess(&a) { b } else { a };
     let decides = eigenvalues.iter().copied().reduce(larger)?;
     let max_re = eigenvalues.iter().map(|one| one.lambda.re).fold(f64::NEG_INFINITY, f64::max);
     Some(Top { max_re, excess: excess(&decides), frequency: decides.lambda.im })
+}
+
+/// How far the excess of an eigenvalue of this accuracy may be off: Re λ, and with a damping ratio ζ also ζ|λ|.
+fn error_of_excess(margin: Margin, accuracy: &Accuracy) -> f64 {
+    match margin {
+        Margin::GrowthRate(_) => accuracy.re,
+        Margin::DampingRatio(ratio) => accuracy.re + ratio * accuracy.whole,
+    }
 }
 
 #[cfg(test)]
@@ -434,6 +457,17 @@ mod tests {
         let noisy = exact.with_noise(1e-8).unwrap();
         assert_eq!((noisy.top().max_re, noisy.mode(2).unwrap().re), (0.0, -0.1));
         assert_eq!(noisy.with_rigid_body_modes(2).unwrap().max_re(), -0.1);
+    }
+
+    /// ζ|λ| is known no better than |λ|.
+    #[test]
+    fn a_damping_ratio_as_margin_takes_the_error_of_the_frequency_with_it() {
+        let lambdas = [Complex::new(-0.1 + 2e-8, 10.0), Complex::new(-0.1 + 2e-8, -10.0)];
+        let errors = [Accuracy { re: 1e-12, whole: 1e-5 }; 2];
+        let judged = |margin| Spectrum::with_zeros(&lambdas, &errors, 0, margin).unwrap().top().excess;
+        let ratio = 0.1 / lambdas[0].norm();
+        assert_eq!(judged(Margin::DampingRatio(ratio)), 0.0);
+        assert!(judged(Margin::GrowthRate(0.1)) > 0.0);
     }
 
     #[test]
