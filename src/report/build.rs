@@ -112,6 +112,7 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
         "fits-cost-more" => {
             "because fits take far longer than the runs of this model; set design.maximum to let it go on"
         }
+        "largest-design" => "because design.maximum allows no more",
         "interrupted" => "because it was stopped",
         other => other,
     };

@@ -56,7 +56,7 @@ pub enum BuildError {
     #[error("fit.derivatives: the model has no derivatives; remove the key or set it to \"auto\" or false")]
     NoDerivatives,
     /// The study skips runs that fail, but there are too many of them.
-    #[error("{failed} of {runs} model runs failed, more than half; the first at {point}: {cause}")]
+    #[error("{}", too_many_failures(*.failed, *.runs, .point, .cause))]
     TooManyFailures {
         /// Runs that failed.
         failed: usize,
@@ -73,6 +73,14 @@ pub enum BuildError {
     /// The user asked to stop.
     #[error("{0}")]
     Interrupted(#[from] Interrupted),
+}
+
+/// What failed in all runs is rather the set-up, so its cause comes first.
+fn too_many_failures(failed: usize, runs: usize, point: &str, cause: &str) -> String {
+    match failed == runs {
+        true => format!("all of {runs} model runs failed: {cause}; the first at {point}"),
+        false => format!("{failed} of {runs} model runs failed, more than half; the first at {point}: {cause}"),
+    }
 }
 
 /// The first of many frequencies, and the last.

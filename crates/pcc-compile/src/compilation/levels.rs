@@ -35,7 +35,10 @@ pub(super) fn build(
     loop {
         match levels.next(observer) {
             Ok(None) => {}
-            Ok(Some(surrogate)) => return Ok(levels.ended(surrogate, None)),
+            Ok(Some(surrogate)) => {
+                let end = levels.early_end;
+                return Ok(levels.ended(surrogate, end));
+            }
             Err(error) if is_interruption(&error) && observer.takes_what_there_is() => {
                 let best = levels.best().ok_or(error)?;
                 return Ok(levels.ended(best, Some(EarlyEnd::Interrupted)));
@@ -120,7 +123,11 @@ impl<'a> Levels<'a> {
         self.spent.fits += start.elapsed();
         observer.remark(&remark((size, self.study.fit.proportion_tolerance), slowest, &judgement, self.spent));
         self.stopping.note(judgement.reducible_error.or(judgement.decision.proportion_error), size);
-        let Some(next) = next.filter(|_| !self.stopping.holds(&results, &judgement)) else {
+        let is_enough = self.stopping.holds(&results, &judgement);
+        if next.is_none() && !is_enough && !self.study.fit.method.has_fixed_design() {
+            self.early_end = self.stopping.end_at_largest_design(&results);
+        }
+        let Some(next) = next.filter(|_| !is_enough) else {
             return match self.fitting.refusal() {
                 Some(refusal) => Err(refusal),
                 None => Ok(Some(surrogate)),

@@ -31,6 +31,8 @@ pub(super) enum EarlyEnd {
     ErrorStalled,
     /// The fits cost more than more runs are worth.
     FitsCostMore,
+    /// The design is as large as the study allows, and no component asks for a larger one.
+    LargestDesign,
     /// The user asked to stop and to take what there is.
     Interrupted,
 }
@@ -41,6 +43,7 @@ impl EarlyEnd {
         match self {
             Self::ErrorStalled => "error-stalled",
             Self::FitsCostMore => "fits-cost-more",
+            Self::LargestDesign => "largest-design",
             Self::Interrupted => "interrupted",
         }
     }
@@ -87,6 +90,11 @@ impl StoppingRule {
             return Some(EarlyEnd::ErrorStalled);
         }
         (self.levels >= LEAST_LEVELS && work > self.most_work).then_some(EarlyEnd::FitsCostMore)
+    }
+
+    /// Why the largest design is the last although it is not good enough, unless components say so themselves.
+    pub fn end_at_largest_design(&self, fitted: &[Fitted]) -> Option<EarlyEnd> {
+        are_accurate(fitted).then_some(EarlyEnd::LargestDesign)
     }
 
     /// Whether the lowest of the last estimates is above what 1/√N makes of those before.
