@@ -28,7 +28,9 @@ impl MarginReport {
 /// The eigenvalues that a surrogate carries, and with which margin.
 pub(super) fn judged_by(surrogate: &Surrogate) -> String {
     let labels = surrogate.labels();
-    let modes: Vec<String> = labels.iter().filter_map(|label| label.mode()).map(|mode| mode.to_string()).collect();
+    let mut modes: Vec<usize> = labels.iter().filter_map(|label| label.mode()).collect();
+    modes.sort_unstable();
+    let modes: Vec<String> = modes.iter().map(usize::to_string).collect();
     let reals = labels.iter().filter(|label| matches!(label, Label::Real(_))).map(|label| label.growth_rate());
     let modes = (!modes.is_empty()).then(|| format!("modes {}", modes.join(", ")));
     let carried = modes.into_iter().chain(reals).collect::<Vec<_>>().join(", ");
