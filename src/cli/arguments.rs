@@ -28,6 +28,10 @@ pub(super) struct Arguments {
     #[arg(long, global = true, display_order = 100)]
     pub json: bool,
 
+    /// Show every detail: all modes, inputs and components
+    #[arg(long, global = true, display_order = 99)]
+    pub details: bool,
+
     /// Number of threads [default: all processors]; results do not depend on it
     #[arg(
         long,

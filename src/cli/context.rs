@@ -17,9 +17,21 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+/// Columns of text where standard output is no terminal, and what is easily read where it is a wide one.
+const COLUMNS: usize = 80;
+const MOST_COLUMNS: usize = 120;
+
+/// How wide text may be.
+fn columns() -> usize {
+    terminal_size::terminal_size_of(std::io::stdout())
+        .map_or(COLUMNS, |(width, _)| usize::from(width.0).min(MOST_COLUMNS))
+}
+
 /// What every command is given.
 pub(super) struct Context {
     pub json: bool,
+    /// Whether reports are to have every detail.
+    pub details: bool,
     pub quiet: bool,
     pub terminal: Terminal,
     /// What is said after an error: it loses nothing.
@@ -36,7 +48,12 @@ impl Context {
 
     /// Prints a report: text for people, or one JSON document.
     pub fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
-        print(&if self.json { format!("{}\n", serde_json::to_string_pretty(report)?) } else { report.to_string() })
+        let columns = columns();
+        print(&match (self.json, self.details) {
+            (true, _) => format!("{}\n", serde_json::to_string_pretty(report)?),
+            (false, true) => format!("{report:#columns$}"),
+            (false, false) => format!("{report:columns$}"),
+        })
     }
 
     /// What the user should know of recorded runs.

@@ -105,6 +105,7 @@ fn prepare(arguments: &Arguments) -> anyhow::Result<(rayon::ThreadPool, Context)
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let context = Context {
         json: arguments.json,
+        details: arguments.details,
         quiet: arguments.quiet,
         terminal: Terminal::new(arguments.quiet, Interrupt::install()?),
         afterwards: Mutex::default(),

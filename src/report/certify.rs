@@ -1,5 +1,7 @@
 //! A verified bound, freshly made.
 
+use super::layout::{Facts, width, wrapped, write_verdict, write_warnings};
+use super::numbers::{level, share_range};
 use pcc_evaluate::foundation::{count, plural};
 use pcc_evaluate::probability::statistics::DiscordantCounts;
 use pcc_evaluate::surrogate::{Certificate, MarginalBounds, Surrogate};
@@ -37,10 +39,9 @@ impl fmt::Display for CertificateReport {
         };
         write!(
             f,
-            "{:.3} to {:.3} % stable at level {level}, {} model runs, seed {seed}, {falsely_stable} falsely stable, \
+            "{} stable at level {level}, {} model runs, seed {seed}, {falsely_stable} falsely stable, \
              {falsely_unstable} falsely unstable{failed}{other}",
-            100.0 * lower,
-            100.0 * upper,
+            share_range(lower, upper),
             count(samples),
         )
     }
@@ -49,6 +50,8 @@ impl fmt::Display for CertificateReport {
 /// What `certify` found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CertifyReport {
+    /// The answer in a sentence.
+    pub verdict: String,
     /// Name of the study.
     pub study: String,
     /// Where the surrogate with its certificates is.
@@ -78,7 +81,43 @@ impl CertifyReport {
             let [lower, upper] = counts.difference(level);
             lower > 0.0 || upper < 0.0
         });
-        Self { study, file, contradicts_surrogate, certificates: CertificateReport::of(surrogate), elapsed_seconds }
+        let certificates = CertificateReport::of(surrogate);
+        let mut report =
+            Self { verdict: String::new(), study, file, contradicts_surrogate, certificates, elapsed_seconds };
+        report.verdict = report.verdict();
+        report
+    }
+}
+
+impl CertifyReport {
+    fn verdict(&self) -> String {
+        let Some(CertificateReport { certificate: new, .. }) = self.certificates.last() else { return String::new() };
+        format!(
+            "{}: {} are stable, whatever the surrogate is worth ({}, from {} fresh model runs).",
+            self.study,
+            share_range(new.lower, new.upper),
+            level(new.level),
+            count(new.samples)
+        )
+    }
+
+    fn facts(&self, new: &Certificate, same_problem: bool) -> Facts {
+        let mut facts = Facts::default();
+        if let Some(MarginalBounds { marginal, unstable, .. }) = new.marginal {
+            facts.add("marginal", share_range(marginal[0], marginal[1]), "");
+            facts.add("unstable", share_range(unstable[0], unstable[1]), "");
+        }
+        if !same_problem {
+            facts.add("of another problem", "than the surrogate was built for: eval does not show this bound", "");
+        }
+        let [stable, unstable] = [new.falsely_stable, new.falsely_unstable].map(count);
+        facts.add("disagreement", format!("{stable} falsely stable, {unstable} falsely unstable"), "");
+        if new.failed > 0 {
+            let failed = plural(new.failed as usize, "run");
+            facts.add("failed", format!("{failed}, counted as disagreement both ways"), "");
+        }
+        facts.add("written to", format!("{}, after {:.2} s", self.file, self.elapsed_seconds), "");
+        facts
     }
 }
 
@@ -88,36 +127,19 @@ impl fmt::Display for CertifyReport {
         else {
             return Ok(());
         };
-        writeln!(f, "{}: {} fresh model runs, {:.2} s\n", self.study, count(new.samples), self.elapsed_seconds)?;
+        let columns = width(f);
         if self.contradicts_surrogate {
-            writeln!(f, "warning: these runs contradict the surrogate: its own share lies outside the bound\n")?;
+            let warning =
+                "these runs contradict the surrogate: its own share lies outside the bound; build with more runs";
+            write_warnings(f, &[warning.to_owned()])?;
         }
-        writeln!(f, "  verified bound         {:.3} % to {:.3} % stable", 100.0 * new.lower, 100.0 * new.upper)?;
-        if let Some(MarginalBounds { marginal, unstable, .. }) = new.marginal {
-            let range = |[lower, upper]: [f64; 2]| format!("{:.3} % to {:.3} %", 100.0 * lower, 100.0 * upper);
-            writeln!(f, "                         {} marginal, {} unstable", range(marginal), range(unstable))?;
-        }
-        writeln!(f, "  level                  {}, whatever the surrogate", new.level)?;
-        if !same_problem {
-            writeln!(f, "  of another problem     than the surrogate was built for: eval does not show this bound")?;
-        }
-        writeln!(
-            f,
-            "  disagreement           {} falsely stable, {} falsely unstable",
-            count(new.falsely_stable),
-            count(new.falsely_unstable)
-        )?;
-        if new.failed > 0 {
-            writeln!(
-                f,
-                "  failed                 {}, counted as disagreement both ways",
-                plural(new.failed as usize, "run")
-            )?;
-        }
+        write_verdict(f, &self.verdict)?;
+        write!(f, "{:columns$}", self.facts(new, *same_problem))?;
         if !earlier.is_empty() {
-            writeln!(f, "\nearlier certificates; choosing among them by their result would void the level:")?;
-            earlier.iter().try_for_each(|certificate| writeln!(f, "  {certificate}"))?;
+            let note = "earlier certificates; choosing among them by their result would void the level:";
+            writeln!(f, "\n{}", wrapped(note, columns, 0))?;
+            earlier.iter().try_for_each(|one| writeln!(f, "{}", wrapped(&format!("  {one}"), columns, 4)))?;
         }
-        writeln!(f, "\nwritten to {}", self.file)
+        Ok(())
     }
 }

@@ -191,15 +191,3 @@ pub(super) fn sobol_charts(report: &SensitivityReport) -> Vec<Chart> {
     };
     parts.into_iter().filter_map(chart).collect()
 }
-
-/// The inputs that matter most, by their total index of stability or else of max Re λ.
-pub(super) fn most_influential(report: &SensitivityReport, count: usize) -> Vec<usize> {
-    let total = |j: usize| {
-        let input = &report.inputs[j];
-        input.stability.or(input.max_re).map_or(0.0, |pair| pair.total.value)
-    };
-    let mut order: Vec<usize> = (0..report.inputs.len()).collect();
-    order.sort_by(|&a, &b| total(b).total_cmp(&total(a)));
-    order.truncate(count);
-    order
-}

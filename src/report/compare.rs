@@ -1,7 +1,9 @@
 //! A surrogate judged against its model.
 
+use super::layout::{Facts, width, write_verdict, write_warnings};
+use super::numbers::{share, significant};
 use super::survey::LEVEL;
-use super::table::{Align, Table, significant};
+use super::table::{Align, Table};
 use pcc_compile::reference::Comparison;
 use pcc_evaluate::foundation::{count, plural};
 use pcc_evaluate::surrogate::Surrogate;
@@ -17,6 +19,8 @@ const SEVERAL: f64 = 3.0;
 /// Surrogate and model on the same points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompareReport {
+    /// The answer in a sentence.
+    pub verdict: String,
     /// Name of the study.
     pub study: String,
     /// Number of points.
@@ -102,7 +106,8 @@ impl CompareReport {
             let real_parts = components.iter().filter(|component| component.name.starts_with("re_"));
             real_parts.filter_map(error).reduce(f64::max)
         };
-        Self {
+        let mut report = Self {
+            verdict: String::new(),
             study: study.to_owned(),
             samples: comparison.samples,
             seed,
@@ -125,7 +130,9 @@ impl CompareReport {
             largest_variance_error_percent: largest(|component| component.variance_error_percent),
             components,
             elapsed_seconds,
-        }
+        };
+        report.verdict = report.verdict();
+        report
     }
 }
 
@@ -149,57 +156,80 @@ fn percentage(error: Option<f64>) -> String {
     }
 }
 
+impl CompareReport {
+    fn verdict(&self) -> String {
+        let all = count(self.samples);
+        let [model, surrogate] = [self.proportion_model, self.proportion_surrogate];
+        let stable = match share(model) == share(surrogate) {
+            true => format!("{} are stable", share(model)),
+            false => format!("{} are stable by the model, {} by the surrogate", share(model), share(surrogate)),
+        };
+        let agreement = match self.misclassified_percent {
+            0.0 => format!("surrogate and model agree on all {all} points"),
+            percent => format!("surrogate and model disagree on {} of {all} points", share(percent / 100.0)),
+        };
+        format!("{}: {agreement}; {stable}.", self.study)
+    }
+
+    fn facts(&self) -> Facts {
+        let mut facts = Facts::default();
+        let error = format!("{} % of the stable share", percentage(self.relative_error_percent));
+        facts.add("stable, model", share(self.proportion_model), "");
+        facts.add("stable, surrogate", share(self.proportion_surrogate), format!("relative error {error}"));
+        if self.marginal_model + self.marginal_surrogate > 0.0 {
+            let shares =
+                |model, surrogate| format!("{} by the model, {} by the surrogate", share(model), share(surrogate));
+            facts.add("marginal", shares(self.marginal_model, self.marginal_surrogate), "");
+            facts.add("unstable", shares(self.unstable_model, self.unstable_surrogate), "");
+        }
+        if self.rigid_body_modes > 0 {
+            facts.add(
+                "rigid-body motion",
+                format!("{} of the eigenvalues, zero and left out", self.rigid_body_modes),
+                "",
+            );
+        }
+        let marginal = match self.falsely_marginal {
+            0 => String::new(),
+            marginal => format!(", {} falsely marginal", count(marginal)),
+        };
+        let how = format!(
+            "{} falsely stable{marginal}, {} falsely unstable",
+            count(self.falsely_stable),
+            count(self.falsely_unstable)
+        );
+        facts.add("misclassified", share(self.misclassified_percent / 100.0), how);
+        if self.failed > 0 {
+            let failed = plural(self.failed as usize, "model run");
+            facts.add("failed", failed, "counted as disagreement; shares are of the others");
+        }
+        let [mean, variance] = [self.largest_mean_error_percent, self.largest_variance_error_percent].map(percentage);
+        facts.add("largest error", format!("mean {mean} %, variance {variance} % (of Re λ)"), "");
+        facts
+    }
+}
+
 impl fmt::Display for CompareReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = width(f);
+        if self.contradicts_surrogate {
+            let warning = "the model contradicts the surrogate by more than it says of its error; build with more runs";
+            write_warnings(f, &[warning.to_owned()])?;
+        }
+        write_verdict(f, &self.verdict)?;
+        writeln!(f, "{:columns$}", self.facts())?;
+        if f.alternate() {
+            let units = "re in 1/s, im in rad/s; variances in their squares";
+            writeln!(f, "{:columns$}{units}\n", self.component_table())?;
+        }
+        let all = if f.alternate() { "" } else { "; all components: --details" };
         writeln!(
             f,
-            "{}: {} direct computations against the surrogate at the same points, {:.2} s, seed {}\n",
-            self.study,
+            "{} direct computations in {:.2} s, seed {}{all}",
             count(self.samples),
             self.elapsed_seconds,
             self.seed
-        )?;
-        if self.contradicts_surrogate {
-            writeln!(f, "warning: the model contradicts the surrogate by more than it says of its error\n")?;
-        }
-        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-        writeln!(f, "  stable, model          {}", percent(self.proportion_model))?;
-        writeln!(f, "  stable, surrogate      {}", percent(self.proportion_surrogate))?;
-        writeln!(f, "  relative error         {} %", percentage(self.relative_error_percent))?;
-        if self.marginal_model + self.marginal_surrogate > 0.0 {
-            let shares =
-                |model, surrogate| format!("{} by the model, {} by the surrogate", percent(model), percent(surrogate));
-            writeln!(f, "  marginal               {}", shares(self.marginal_model, self.marginal_surrogate))?;
-            writeln!(f, "  unstable               {}", shares(self.unstable_model, self.unstable_surrogate))?;
-        }
-        if self.rigid_body_modes > 0 {
-            writeln!(f, "  rigid body             {} of the eigenvalues, zero and left out", self.rigid_body_modes)?;
-        }
-        writeln!(
-            f,
-            "  misclassified          {} %   {} falsely stable{}, {} falsely unstable",
-            significant(self.misclassified_percent, 3),
-            count(self.falsely_stable),
-            match self.falsely_marginal {
-                0 => String::new(),
-                marginal => format!(", {} falsely marginal", count(marginal)),
-            },
-            count(self.falsely_unstable)
-        )?;
-        if self.failed > 0 {
-            writeln!(
-                f,
-                "  failed                 {}, counted as disagreement; shares are of the others",
-                plural(self.failed as usize, "model run")
-            )?;
-        }
-        writeln!(
-            f,
-            "  largest error, Re λ    mean {} %, variance {} %\n",
-            percentage(self.largest_mean_error_percent),
-            percentage(self.largest_variance_error_percent)
-        )?;
-        writeln!(f, "{}re in 1/s, im in rad/s; variances in their squares", self.component_table())
+        )
     }
 }
 

@@ -1,11 +1,11 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
+use super::numbers::{level, share_range, significant};
 use super::survey::LEVEL;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Proportion};
 use pcc_evaluate::surrogate::{Certificate, Decision, Surrogate};
 use serde::Serialize;
-use std::fmt;
 
 /// Answers to "how sure?", each about something else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -88,14 +88,12 @@ impl Confidence {
         let own = |certificate: &&Certificate| certificate.problem_hash == surrogate.provenance.problem_hash;
         let excludes = |certificate: &&Certificate| share < certificate.lower || share > certificate.upper;
         let certificate = surrogate.certificates.iter().filter(own).find(excludes)?;
-        let bound = Interval { lower: certificate.lower, upper: certificate.upper, level: certificate.level };
         Some(format!(
-            "a certificate contradicts the surrogate: by {} fresh model runs {} to {} are stable, not {}; trust the certificate, and \
-             build with more runs",
+            "a certificate contradicts the surrogate: by {} fresh model runs {} are stable, not {}; trust it, and build \
+             with more runs",
             count(certificate.samples),
-            percent(bound.lower),
-            percent(bound.upper),
-            percent(share)
+            share_range(certificate.lower, certificate.upper),
+            super::share(share)
         ))
     }
 
@@ -113,12 +111,11 @@ pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
     surrogate.training.levels.len() == 1 || super::build::is_quadrature(surrogate)
 }
 
-/// What an estimated error of so many percent says.
-pub(super) fn error_text(percent: f64, of_modes_left_out: bool) -> String {
-    let percent = super::significant(percent, 2);
+/// What an estimated error is a share of, and where it is from.
+pub(super) fn error_words(of_modes_left_out: bool) -> &'static str {
     match of_modes_left_out {
-        true => format!("modes left out alone may move it by {percent} %"),
-        false => format!("estimated error {percent} % of the proportion"),
+        true => "of the stable share, by modes left out alone",
+        false => "of the stable share, by points left out",
     }
 }
 
@@ -131,52 +128,49 @@ fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
     Some(VerifiedBound { bound: Interval { lower, upper, level }, samples, seed, certificates: valid.len() })
 }
 
-fn percent(share: f64) -> String {
-    format!("{:.3} %", 100.0 * share)
-}
-
 impl Confidence {
-    /// The three lines: what each is about, and what it says.
-    pub(super) fn facts(&self) -> [(&'static str, String); 3] {
-        let range = |interval: &Interval| format!("{} to {}", percent(interval.lower), percent(interval.upper));
-        let level = |interval: &Interval| format!("{:.0} %", 100.0 * interval.level);
-        let Self { interval, surrogate_band, verified_bound, .. } = self;
-        let sampling = match self.basis.replicates {
-            0 | 1 => format!("{}   {}, from {} samples", range(interval), level(interval), count(self.basis.samples)),
-            replicates => format!("{}   {}, from {replicates} replicates", range(interval), level(interval)),
+    /// What leaves how much open: names, values and words. If it is the unstable share that is named, so are its
+    /// intervals.
+    pub(super) fn facts(&self, of_unstable: bool) -> Vec<(&'static str, String, String)> {
+        let range = |interval: &Interval| match of_unstable {
+            true => share_range(1.0 - interval.upper, 1.0 - interval.lower),
+            false => share_range(interval.lower, interval.upper),
         };
-        let band = match (surrogate_band, self.estimated_error_percent) {
-            (None, None) => "unknown: no point could be left out".to_owned(),
-            (None, Some(error)) => {
-                format!("unknown: no point could be left out; {}", error_text(error, self.basis.of_modes_left_out))
-            }
-            (Some(band), error) => {
-                let error = error
-                    .map_or(String::new(), |error| format!("; {}", error_text(error, self.basis.of_modes_left_out)));
-                let place = if self.basis.is_confined { " in all of the domain" } else { "" };
-                format!("{}   {} of points left out{place}{error}", range(band), level(band))
-            }
+        let Self { interval, surrogate_band, estimated_error_percent, verified_bound, basis } = self;
+        let by = match basis.replicates {
+            0 | 1 => format!("{} samples", count(basis.samples)),
+            replicates => format!("{replicates} replicates"),
         };
-        let verified = match verified_bound {
-            None if self.basis.is_confined => "none for a part of the domain".to_owned(),
-            None => "none; `pcc certify` makes one from fresh model runs".to_owned(),
+        let mut facts =
+            vec![("sampling interval", range(interval), format!("left open by {by}, {}", level(interval.level)))];
+        let place = if basis.is_confined { ", in all of the domain" } else { "" };
+        facts.push(match surrogate_band {
+            Some(band) => {
+                let words = format!("left open by the fit, {} of points{place}", level(band.level));
+                ("surrogate band", range(band), words)
+            }
+            None => ("surrogate band", "unknown".to_owned(), "no point could be left out".to_owned()),
+        });
+        if let Some(error) = estimated_error_percent {
+            let words = error_words(basis.of_modes_left_out).to_owned();
+            facts.push(("estimated error", format!("{} %", significant(*error, 2)), words));
+        }
+        facts.push(match verified_bound {
+            None if basis.is_confined => ("verified bound", "none for a part of the domain".to_owned(), String::new()),
+            None => ("verified bound", "none yet".to_owned(), "pcc certify makes one from fresh runs".to_owned()),
             Some(VerifiedBound { bound, samples, seed, certificates }) => {
                 let others =
                     if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
-                format!(
-                    "{}   {}, {} fresh model runs, seed {seed}{others}",
-                    range(bound),
-                    level(bound),
-                    count(*samples)
-                )
+                let words =
+                    format!("{}, {} fresh model runs, seed {seed}{others}", level(bound.level), count(*samples));
+                ("verified bound", range(bound), words)
             }
-        };
-        [("sampling interval", sampling), ("surrogate band", band), ("verified bound", verified)]
+        });
+        facts
     }
-}
 
-impl fmt::Display for Confidence {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.facts().iter().try_for_each(|(name, fact)| writeln!(f, "  {name:<22} {fact}"))
+    /// The interval alone: what is known of direct computations.
+    pub(super) fn sampling(&self, of_unstable: bool) -> (&'static str, String, String) {
+        self.facts(of_unstable).swap_remove(0)
     }
 }

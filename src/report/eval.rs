@@ -1,8 +1,8 @@
 //! The answer of `eval` and `reference`: stability and what engineers read of each mode.
 
-use super::build::FitReport;
 use super::confidence::Confidence;
 use super::coverage::Bounds;
+use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
@@ -19,6 +19,8 @@ use std::f64::consts::TAU;
 /// Statistics over samples, from a surrogate or from the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EvalReport {
+    /// The answer in a sentence.
+    pub verdict: String,
     /// Name of the study.
     pub study: String,
     /// Whether model or surrogate was sampled.
@@ -110,8 +112,6 @@ pub struct OnlyInText {
     pub merged_parts: Option<usize>,
     /// Randomisations that were asked for.
     pub requested_replicates: u32,
-    /// Whether the first warning is that a certificate excludes the share, which is said before it.
-    pub is_contradicted: bool,
 }
 
 /// Moments and range.
@@ -249,7 +249,6 @@ impl EvalReport {
             has_all_samples: answer.is_complete,
             merged_parts: found.merged_parts,
             requested_replicates: question.replicates,
-            is_contradicted: false,
         };
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
@@ -281,24 +280,26 @@ impl EvalReport {
         report.warnings = FitReport::warnings_of(surrogate);
         if is_whole && let Some(contradiction) = Confidence::contradiction(surrogate, stable.value()) {
             report.warnings.insert(0, contradiction);
-            report.only_in_text.is_contradicted = true;
         }
         report.warnings.extend(unbalanced(question));
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
+        report.verdict = report.verdict_sentence();
         Some(report)
     }
 
     /// The report of direct computations that are judged with this margin.
     pub fn of_model(study: &str, reference: &Reference, margin: Margin, seed: u64, elapsed_seconds: f64) -> Self {
         let Reference { outputs, summary, rigid_body_modes, is_undamped } = reference;
-        Self {
+        let mut report = Self {
             judged_by: with_margin("all eigenvalues".to_owned(), margin),
             undamped: *is_undamped,
             rigid_body_modes: Some(*rigid_body_modes),
             margin: MarginReport::of(margin),
             ..Self::new(study, "model", outputs, summary, seed, elapsed_seconds)
-        }
+        };
+        report.verdict = report.verdict_sentence();
+        report
     }
 
     fn new(
@@ -319,6 +320,7 @@ impl EvalReport {
         let mut names: Vec<_> = outputs.iter().flat_map(|output| &output.components).collect();
         names.sort_by_key(|component| component.id);
         Self {
+            verdict: String::new(),
             study: study.to_owned(),
             source,
             samples: stable.samples,
@@ -370,12 +372,7 @@ impl EvalReport {
             warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
-            only_in_text: OnlyInText {
-                has_all_samples: true,
-                merged_parts: None,
-                requested_replicates: 1,
-                is_contradicted: false,
-            },
+            only_in_text: OnlyInText { has_all_samples: true, merged_parts: None, requested_replicates: 1 },
         }
     }
 }

@@ -1,13 +1,16 @@
 //! What is inside a surrogate file.
 
-use super::build::{FitReport, level_list, with_derivatives};
+use super::build::{level_list, with_derivatives};
 use super::certify::CertificateReport;
-use super::confidence::{error_text, is_of_modes_left_out};
+use super::confidence::{error_words, is_of_modes_left_out};
+use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
-use super::table::{Align, Table, significant};
+use super::layout::{Facts, width, write_verdict, write_warnings};
+use super::numbers::significant;
+use super::table::{Align, Table};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
-use pcc_evaluate::foundation::count;
+use pcc_evaluate::foundation::{count, plural};
 use pcc_evaluate::probability::inputs::Marginal;
 use pcc_evaluate::surrogate::{Setting, SettingValue};
 use serde::Serialize;
@@ -17,6 +20,8 @@ use std::fmt;
 /// The content of a surrogate file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InspectReport {
+    /// What it is in a sentence.
+    pub verdict: String,
     /// Where the file is.
     pub file: String,
     /// Its size.
@@ -121,7 +126,8 @@ impl InspectReport {
     pub fn new(artifact: &Artifact, file: String, bytes: u64) -> Self {
         let surrogate = &artifact.surrogate;
         let plan = Plan::new(surrogate);
-        Self {
+        let mut report = Self {
+            verdict: String::new(),
             file,
             bytes,
             encoding: match artifact.format {
@@ -161,20 +167,29 @@ impl InspectReport {
             self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
             certificates: CertificateReport::of(surrogate),
-        }
+        };
+        report.verdict = report.verdict();
+        report
     }
 
     fn estimated_error(&self) -> String {
         match self.estimated_error_percent {
-            Some(error) => error_text(error, self.of_modes_left_out),
+            Some(error) => format!("{} % {}", significant(error, 2), error_words(self.of_modes_left_out)),
             None if self.components.iter().all(|fit| fit.s2.is_none()) => {
-                "error not estimated, because no point was left out".to_owned()
+                "not estimated, because no point was left out".to_owned()
             }
-            None if self.method == "gpc" => {
-                "error not estimated, which takes two design levels and gPC has one".to_owned()
-            }
-            None => "error not estimated, which takes two design levels".to_owned(),
+            None if self.method == "gpc" => "not estimated, which takes two design levels and gPC has one".to_owned(),
+            None => "not estimated, which takes two design levels".to_owned(),
         }
+    }
+
+    fn verdict(&self) -> String {
+        let inputs = plural(self.inputs.len(), "uncertain input");
+        let runs = plural(self.direct_computations as usize, "model run");
+        let derivatives = with_derivatives(self.runs_with_derivatives, self.direct_computations);
+        let test = if self.self_test_holds() { "" } else { " Its self-test FAILS: do not use it." };
+        let Self { file, study, judged_by, .. } = self;
+        format!("{file} is a surrogate of {study}: {inputs}, {judged_by}, from {runs}{derivatives}.{test}")
     }
 
     /// Whether the evaluator finds what the self-test expects.
@@ -206,70 +221,75 @@ fn input(input: &pcc_evaluate::probability::inputs::Input) -> InputReport {
 
 impl fmt::Display for InspectReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{}: {} surrogate, format {}, {} bytes\n",
-            self.file,
-            self.encoding,
-            self.format,
-            count(self.bytes)
-        )?;
-        for (name, fact) in self.facts() {
-            writeln!(f, "  {name:<14} {fact}")?;
+        let columns = width(f);
+        write_warnings(f, &self.warnings)?;
+        write_verdict(f, &self.verdict)?;
+        write!(f, "{:columns$}", self.facts())?;
+        if !f.alternate() {
+            return writeln!(f, "\n{:columns$}\nmore: --details", self.input_table());
         }
-        for certificate in &self.certificates {
-            writeln!(f, "  {:<14} {certificate}", "certificate")?;
-        }
-        for kind in &self.unknown_sections {
-            writeln!(f, "  {:<14} of kind {kind}, skipped: this pcc does not know it", "section")?;
-        }
-        write!(f, "\n{}\n{}", self.input_table(), FitReport::table(&self.components))?;
-        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
+        write!(f, "{:columns$}", self.further_facts())?;
+        writeln!(f)?;
+        // Too long for what stands before facts.
+        self.hashes().iter().try_for_each(|(name, hash)| writeln!(f, "{name:<12}  {hash}"))?;
+        let (inputs, components) = (self.input_table(), FitReport::table(&self.components));
+        write!(f, "\n{inputs:columns$}\n{components:columns$}")
     }
 }
 
 impl InspectReport {
-    /// What there is to say in words.
-    pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
-        let settings: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key} {value}")).collect();
-        let test = if self.self_test_holds() { "holds" } else { "FAILS" };
-        let mut facts = vec![
-            ("study", self.study.clone()),
-            ("built by", format!("pcc {}", self.tool_version)),
-            (
-                "model runs",
-                format!(
-                    "{}{}, {} failed",
-                    count(self.direct_computations),
-                    with_derivatives(self.runs_with_derivatives, self.direct_computations),
-                    self.failed_runs
-                ),
-            ),
-            ("design", format!("{}, levels {}, seed {}", self.design, level_list(&self.levels), self.seed)),
-            ("method", format!("{}: {}", self.method, settings.join(", "))),
-            ("eigenvalues", format!("{}, numbered by frequency in the middle of the inputs", self.judged_by)),
-            ("proportion", self.estimated_error()),
-            ("evaluation", format!("{} terms, {} operations per point", self.plan.terms, self.plan.flops)),
-            ("self-test", format!("{test}: largest difference {}", significant(self.self_test_difference, 2))),
-            ("problem hash", self.problem_hash.clone()),
-            ("content id", self.content_id.clone()),
-        ];
-        if let Some(band) = &self.band {
-            facts.insert(6, ("frequencies", band.clone()));
+    /// What most people want to know.
+    pub(super) fn facts(&self) -> Facts {
+        let mut facts = Facts::default();
+        let runs = count(self.direct_computations);
+        let failed = if self.failed_runs > 0 { format!(", {} failed", count(self.failed_runs)) } else { String::new() };
+        facts.add("model runs", format!("{runs}{failed}, levels {}, seed {}", level_list(&self.levels), self.seed), "");
+        facts.add("estimated error", self.estimated_error(), "");
+        if self.rigid_body_modes > 0 {
+            let motion = format!("{} eigenvalues, zero everywhere and left out", self.rigid_body_modes);
+            facts.add("rigid-body motion", motion, "");
         }
         if self.undamped {
-            facts.insert(6, ("damping", "none: eigenvalues come as λ and −λ".to_owned()));
+            facts.add("damping", "none: eigenvalues come as λ and −λ", "");
         }
-        if self.rigid_body_modes > 0 {
-            let motion = format!("{} eigenvalues, negligible everywhere and left out", self.rigid_body_modes);
-            facts.insert(6, ("rigid body", motion));
+        if let Some(band) = &self.band {
+            facts.add("frequencies", band.clone(), "");
         }
+        let test = if self.self_test_holds() { "holds" } else { "FAILS" };
+        facts.add("self-test", test, format!("largest difference {}", significant(self.self_test_difference, 2)));
+        for certificate in &self.certificates {
+            facts.add("certificate", certificate.to_string(), "");
+        }
+        for kind in &self.unknown_sections {
+            facts.add("section", format!("of kind {kind}, skipped: this pcc does not know it"), "");
+        }
+        let (bytes, encoding) = (count(self.bytes), self.encoding);
+        facts.add(
+            "file",
+            format!("{encoding}, format {}, {bytes} bytes, by pcc {}", self.format, self.tool_version),
+            "",
+        );
+        facts
+    }
+
+    /// What else there is.
+    pub(super) fn further_facts(&self) -> Facts {
+        let mut facts = Facts::default();
+        let settings: Vec<String> = self.settings.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        facts.add("design", self.design.clone(), "");
         if self.elements > 1 {
             let mesh =
                 format!("{}, {} model runs in the final mesh", self.elements, count(self.final_mesh_computations));
-            facts.insert(5, ("elements", mesh));
+            facts.add("elements", mesh, "");
         }
+        facts.add("method", format!("{}: {}", self.method, settings.join(", ")), "");
+        facts.add("evaluation", format!("{} terms, {} operations per point", self.plan.terms, self.plan.flops), "");
         facts
+    }
+
+    /// What tells problems and answers apart.
+    pub(super) fn hashes(&self) -> [(&'static str, String); 2] {
+        [("problem hash", self.problem_hash.clone()), ("content id", self.content_id.clone())]
     }
 
     pub(super) fn input_table(&self) -> Table {

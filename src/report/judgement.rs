@@ -1,5 +1,6 @@
 //! What stability is judged by, in words.
 
+use super::numbers::plain;
 use pcc_evaluate::components::{Label, Margin};
 use pcc_evaluate::surrogate::{Band, Surrogate, VerdictBasis};
 use serde::Serialize;
@@ -30,9 +31,8 @@ pub(super) fn judged_by(surrogate: &Surrogate) -> String {
     let labels = surrogate.labels();
     let mut modes: Vec<usize> = labels.iter().filter_map(|label| label.mode()).collect();
     modes.sort_unstable();
-    let modes: Vec<String> = modes.iter().map(usize::to_string).collect();
     let reals = labels.iter().filter(|label| matches!(label, Label::Real(_))).map(|label| label.growth_rate());
-    let modes = (!modes.is_empty()).then(|| format!("modes {}", modes.join(", ")));
+    let modes = (!modes.is_empty()).then(|| modes_text(&modes));
     let carried = modes.into_iter().chain(reals).collect::<Vec<_>>().join(", ");
     with_margin(carried, surrogate.verdict.margin)
 }
@@ -41,8 +41,8 @@ pub(super) fn judged_by(surrogate: &Surrogate) -> String {
 pub(super) fn with_margin(judged_by: String, margin: Margin) -> String {
     match margin {
         margin if margin.is_none() => judged_by,
-        Margin::GrowthRate(rate) => format!("{judged_by}, each to decay faster than {rate} 1/s"),
-        Margin::DampingRatio(ratio) => format!("{judged_by}, each with a damping ratio above {ratio}"),
+        Margin::GrowthRate(rate) => format!("{judged_by}, each to decay faster than {} 1/s", plain(rate)),
+        Margin::DampingRatio(ratio) => format!("{judged_by}, each with a damping ratio above {}", plain(ratio)),
     }
 }
 
@@ -59,12 +59,17 @@ pub(super) fn outside_band(surrogate: &Surrogate) -> Option<String> {
     let missing = |label: Label| !held.contains(&label);
     let modes: Vec<usize> = (1..=modes).filter(|&mode| missing(Label::Mode(mode))).collect();
     let reals = (1..=reals).map(Label::Real).filter(|&label| missing(label)).map(Label::growth_rate);
-    let modes = (!modes.is_empty()).then(|| format!("modes {}", ranges(&modes)));
+    let modes = (!modes.is_empty()).then(|| modes_text(&modes));
     let outside = modes.into_iter().chain(reals).collect::<Vec<_>>().join(", ");
     Some(match outside.is_empty() {
         true => format!("{lower} to {upper} Hz, which holds all modes"),
         false => format!("{lower} to {upper} Hz; outside and not judged: {outside}"),
     })
+}
+
+/// "mode 4", "modes 1–3, 5".
+pub(super) fn modes_text(ascending: &[usize]) -> String {
+    format!("{} {}", if ascending.len() == 1 { "mode" } else { "modes" }, ranges(ascending))
 }
 
 /// Ascending numbers, those that follow each other in one.

@@ -2,10 +2,11 @@
 //! lacks.
 
 use super::charts::{density_chart, sobol_charts};
+use super::numbers::significant;
 use super::page::Page;
 use super::paper_charts::{cost_chart, figure_3, figure_4};
 use super::sensitivity::SensitivityReport;
-use super::table::{Align, Table, significant};
+use super::table::{Align, Table};
 use crate::reproduce::{Closer, Cloud, MOST_INPUTS, PAIR, PaperRow, Range, Reproduction, Row, TABLE_2};
 use pcc_charts::{Chart, Color, sheet};
 use pcc_evaluate::foundation::count;

@@ -1,6 +1,8 @@
 //! Which inputs decide stability, and where one of them does.
 
-use super::table::{Align, Table, significant};
+use super::layout::{Facts, width, wrapped};
+use super::numbers::{share, significant};
+use super::table::{Align, Table};
 use pcc_evaluate::components::Label;
 use pcc_evaluate::evaluation::{
     CRITICAL_LEVELS, CriticalValues, Crossing, Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity,
@@ -66,6 +68,41 @@ impl SensitivityReport {
         };
         Self { samples: found.samples, level: SENSITIVITY_LEVEL, inputs: names.enumerate().map(input).collect() }
     }
+
+    /// How much of what decides stability an input has a part in.
+    fn total(&self, j: usize) -> f64 {
+        self.inputs[j].stability.or(self.inputs[j].max_re).map_or(0.0, |pair| pair.total.value)
+    }
+
+    /// Numbers of the inputs, the one that decides most first.
+    pub(super) fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.inputs.len()).collect();
+        order.sort_by(|&a, &b| self.total(b).total_cmp(&self.total(a)));
+        order
+    }
+
+    /// Their names and total indices.
+    pub(super) fn ranked(&self) -> Vec<(&str, f64)> {
+        self.order().into_iter().map(|j| (self.inputs[j].input.as_str(), self.total(j))).collect()
+    }
+
+    /// The inputs that decide most; `None` if nothing varies.
+    pub(super) fn causes(&self, most: usize) -> Option<Table> {
+        let right = Align::Right;
+        let mut table = Table::new(&[("what decides", Align::Left), ("alone", right), ("in all", right)]);
+        for j in self.order().into_iter().take(most) {
+            let pair = self.inputs[j].stability.or(self.inputs[j].max_re)?;
+            table.row([self.inputs[j].input.clone(), cell(Some(pair.first)), cell(Some(pair.total))]);
+        }
+        Some(table)
+    }
+}
+
+/// An index with its interval.
+fn cell(value: Option<Bounded>) -> String {
+    value.map_or("–".to_owned(), |Bounded { value, lower, upper }| {
+        format!("{value:.3} ± {:.3}", (value - lower).max(upper - value))
+    })
 }
 
 impl fmt::Display for SensitivityReport {
@@ -81,11 +118,6 @@ impl fmt::Display for SensitivityReport {
             ("stability, first", right),
             ("total", right),
         ]);
-        let cell = |value: Option<Bounded>| {
-            value.map_or("–".to_owned(), |Bounded { value, lower, upper }| {
-                format!("{value:.3} ± {:.3}", (value - lower).max(upper - value))
-            })
-        };
         for input in &self.inputs {
             table.row([
                 input.input.clone(),
@@ -95,8 +127,9 @@ impl fmt::Display for SensitivityReport {
                 cell(input.stability.map(|pair| pair.total)),
             ]);
         }
-        let note = "share of what decides stability that an input causes alone / in all, ± at 95 %";
-        writeln!(f, "\n{table}{note}; first ≤ total within that")
+        let note = "share of the variance that an input causes alone (first) and in all (total), ± at 95 %";
+        let columns = width(f);
+        writeln!(f, "\n{table:columns$}{}", wrapped(note, columns, 0))
     }
 }
 
@@ -190,7 +223,7 @@ fn crossings_table(crossings: &[CrossingReport]) -> Option<Table> {
             crossing.stability.to_owned(),
             crossing.mode.clone(),
             crossing.kind.to_owned(),
-            format!("{:.3} %", 100.0 * crossing.share),
+            share(crossing.share),
         ];
         table.row(words.into_iter().chain(values));
     }
@@ -229,21 +262,24 @@ impl fmt::Display for CriticalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = |value: Option<f64>| value.map_or("never".to_owned(), |value| significant(value, 4));
         writeln!(f, "\ncritical {}: the smallest value at which the system is unstable", self.input)?;
-        writeln!(f, "  stable throughout      {:.3} %", 100.0 * self.never)?;
-        writeln!(f, "  unstable from start    {:.3} %", 100.0 * self.unstable_from_start)?;
+        let columns = width(f);
+        let mut facts = Facts::default();
+        facts.add("stable throughout", share(self.never), "");
+        facts.add("unstable from start", share(self.unstable_from_start), "");
         let (mean, minimum, maximum) = (value(self.mean), value(self.minimum), value(self.maximum));
         let start = if self.unstable_from_start > 0.0 { "; the lower bound for those unstable from start" } else { "" };
-        writeln!(f, "  critical values        mean {mean}, {minimum} to {maximum}{start}\n")?;
-        let mut columns = vec![("share unstable at or below", Align::Left)];
-        let levels: Vec<String> = self.quantiles.iter().map(|q| format!("{} %", 100.0 * q.level)).collect();
-        columns.extend(levels.iter().map(|level| (level.as_str(), Align::Right)));
-        let mut table = Table::new(&columns);
+        facts.add("critical values", format!("mean {mean}, {minimum} to {maximum}{start}"), "");
+        writeln!(f, "{facts:columns$}")?;
+        let mut heads = vec![("share unstable at or below", Align::Left)];
+        let levels: Vec<String> = self.quantiles.iter().map(|q| super::numbers::level(q.level)).collect();
+        heads.extend(levels.iter().map(|level| (level.as_str(), Align::Right)));
+        let mut table = Table::new(&heads);
         let mut row = vec![self.input.clone()];
         row.extend(self.quantiles.iter().map(|quantile| value(quantile.value)));
         table.row(row);
-        write!(f, "{table}")?;
+        write!(f, "{table:columns$}")?;
         match crossings_table(&self.crossings) {
-            Some(crossings) => write!(f, "\n{crossings}"),
+            Some(crossings) => write!(f, "\n{crossings:columns$}"),
             None => Ok(()),
         }
     }

@@ -1,11 +1,11 @@
 //! A surrogate on one page: the answer and how sure it is, what the surrogate is made of, and pictures.
 
-use super::charts::{density_chart, mode_charts, most_influential, sobol_charts, spectrum_chart, validation_chart};
+use super::charts::{density_chart, mode_charts, sobol_charts, spectrum_chart, validation_chart};
 use super::compare::CompareReport;
 use super::eval::EvalReport;
 use super::inspect::InspectReport;
+use super::numbers::{share, significant};
 use super::page::Page;
-use super::table::significant;
 use pcc_charts::Color;
 use pcc_evaluate::components::Block;
 use pcc_evaluate::foundation::count;
@@ -59,16 +59,16 @@ impl SurrogatePage<'_> {
 
     fn answer(&self, page: &mut Page) {
         let eval = self.eval;
-        page.lead(&eval.headline());
-        page.facts(&eval.confidence.facts());
+        page.lead(&eval.verdict);
+        page.facts(&eval.facts().pairs());
         eval.warnings.iter().for_each(|warning| page.warning(warning));
         if let Some(Validation { compare, .. }) = &self.validation {
             let checked = format!(
-                "The model was run at {} such points, too: {:.3} % of them are stable by the model and {:.3} % by the \
+                "The model was run at the first {} of these samples, too: of those {} are stable by the model and {} by the \
                  surrogate, a relative error of {}, and {} % are misclassified.",
                 count(compare.samples),
-                100.0 * compare.proportion_model,
-                100.0 * compare.proportion_surrogate,
+                share(compare.proportion_model),
+                share(compare.proportion_surrogate),
                 compare
                     .relative_error_percent
                     .map_or("infinity".to_owned(), |error| format!("{} %", significant(error, 2))),
@@ -101,8 +101,8 @@ impl SurrogatePage<'_> {
 
     fn modes(&self, page: &mut Page) {
         page.section("Modes over the most influential inputs");
-        let inputs = match &self.eval.sensitivity {
-            Some(sensitivity) => most_influential(sensitivity, DRAWN_INPUTS),
+        let inputs: Vec<usize> = match &self.eval.sensitivity {
+            Some(sensitivity) => sensitivity.order().into_iter().take(DRAWN_INPUTS).collect(),
             None => (0..self.surrogate.inputs.dimension().min(DRAWN_INPUTS)).collect(),
         };
         let shown = self.points.len().min(SCATTER);
@@ -121,8 +121,10 @@ impl SurrogatePage<'_> {
         page.section("Inputs");
         page.table(&self.inspect.input_table());
         page.section("How the surrogate was made");
-        page.facts(&self.inspect.facts());
-        page.table(&super::build::FitReport::table(&self.inspect.components));
+        page.facts(&self.inspect.facts().pairs());
+        page.facts(&self.inspect.further_facts().pairs());
+        page.facts(&self.inspect.hashes());
+        page.table(&super::fit::FitReport::table(&self.inspect.components));
         page.paragraph(
             "R² is the share of the variance explained at the points of the design, S² that at points left out of the fit.",
         );

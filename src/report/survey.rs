@@ -1,11 +1,12 @@
 //! What else was counted: events, histograms, quantiles; and what the samples were confined to.
 
-use super::table::{Align, Table, plain, significant};
+use super::layout::Facts;
+use super::numbers::{self, level, plain, share, significant};
+use super::table::{Align, Table};
 use pcc_evaluate::evaluation::{Bins, Cell, Condition, Histogram, Question};
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::Interval;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// Confidence level of the printed intervals.
 pub(super) const LEVEL: f64 = 0.95;
@@ -13,8 +14,9 @@ pub(super) const LEVEL: f64 = 0.95;
 /// Relative width of histograms whose edges would all look the same.
 const NARROW: f64 = 1e-5;
 
-/// Width of the longest bar of a histogram, in characters.
-const LONGEST_BAR: f64 = 50.0;
+/// Width of the longest bar of a histogram, in characters, and of what stands before it.
+const LONGEST_BAR: usize = 50;
+const BEFORE_BAR: usize = 40;
 
 /// Samples in which a quantity is below or above a value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -112,25 +114,16 @@ pub(super) fn conditions_text(conditions: &[Condition]) -> String {
 }
 
 /// One line per event.
-pub(super) fn events_text(events: &[EventReport]) -> String {
-    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-    events.iter().fold(String::new(), |mut text, EventReport { event, samples, proportion, interval }| {
-        let range = format!("{} to {}", percent(interval.lower), percent(interval.upper));
-        let level = 100.0 * interval.level;
-        let _ = writeln!(
-            text,
-            "  {event:<22} {}   {range}   {level:.0} %, {} samples",
-            percent(*proportion),
-            count(*samples)
-        );
-        text
-    })
+pub(super) fn add_events(facts: &mut Facts, events: &[EventReport]) {
+    for EventReport { event, samples, proportion, interval } in events {
+        let words = format!("{}, {}, {} samples", numbers::interval(interval), level(interval.level), count(*samples));
+        facts.add(event, share(*proportion), words);
+    }
 }
 
 /// One row per quantity, one column per level.
 pub(super) fn quantiles_table(quantiles: &[QuantilesReport]) -> Option<Table> {
-    let levels: Vec<String> =
-        quantiles.first()?.quantiles.iter().map(|quantile| format!("{} %", plain(100.0 * quantile.level))).collect();
+    let levels: Vec<String> = quantiles.first()?.quantiles.iter().map(|quantile| level(quantile.level)).collect();
     let mut columns = vec![("quantile", Align::Left)];
     columns.extend(levels.iter().map(|level| (level.as_str(), Align::Right)));
     columns.push(("to within", Align::Right));
@@ -147,12 +140,13 @@ pub(super) fn quantiles_table(quantiles: &[QuantilesReport]) -> Option<Table> {
 }
 
 /// One line per bin, with a bar.
-pub(super) fn histogram_text(histogram: &HistogramReport) -> String {
+pub(super) fn histogram_text(histogram: &HistogramReport, columns: usize) -> String {
     let HistogramReport { quantity, lower, upper, below, counts, above } = histogram;
     if upper - lower < NARROW * lower.abs().max(upper.abs()) {
         let samples = count(below + counts.iter().sum::<u64>() + above);
         return format!("histogram of {quantity}\nall {samples} samples are near {}\n", plain(*lower));
     }
+    let longest = LONGEST_BAR.min(columns.saturating_sub(BEFORE_BAR));
     let most = counts.iter().copied().max().unwrap_or(0).max(1);
     let width = (upper - lower) / counts.len().max(1) as f64;
     let mut table =
@@ -162,13 +156,13 @@ pub(super) fn histogram_text(histogram: &HistogramReport) -> String {
     }
     for (number, &samples) in counts.iter().enumerate() {
         let edge = |number: usize| plain(rounded_to(lower + width * number as f64, width));
-        let bar = (LONGEST_BAR * samples as f64 / most as f64).round() as usize;
+        let bar = (longest as f64 * samples as f64 / most as f64).round() as usize;
         table.row([edge(number), edge(number + 1), count(samples), "█".repeat(bar)]);
     }
     if *above > 0 {
         table.row(["above".to_owned(), plain(*upper), count(*above), String::new()]);
     }
-    format!("histogram of {quantity}\n{table}")
+    format!("histogram of {quantity}\n{table:columns$}")
 }
 
 /// Zero if an edge is zero but for rounding.

@@ -1,30 +1,19 @@
 //! The stability proportion along one input, or over two.
 
-use super::charts::short;
 use super::eval::QuantileReport;
-use super::eval_text::pace;
 use super::judgement::judged_by;
-use super::survey::{EventReport, LEVEL, conditions_text, events};
-use super::table::{Align, Table, plain, significant};
-use pcc_charts::{Axis, Cells, Chart, Color, Marks, Series, Symbol, sheet};
-use pcc_evaluate::evaluation::{Cell, Condition, Sampler, Sweep};
-use pcc_evaluate::foundation::count;
+use super::survey::{EventReport, LEVEL, events};
+use pcc_evaluate::evaluation::{Cell, Condition, Sweep};
 use pcc_evaluate::probability::statistics::Interval;
 use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::Decision;
 use serde::Serialize;
-use std::fmt;
-
-/// Width of the longest bar, in characters.
-const LONGEST_BAR: f64 = 40.0;
-
-/// Lines and characters of a map on a terminal, at most.
-const MOST_ROWS: u32 = 51;
-const MOST_COLUMNS: u32 = 101;
 
 /// The answer of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepReport {
+    /// The answer in a sentence.
+    pub verdict: String,
     /// Name of the study.
     pub study: String,
     /// Always "surrogate".
@@ -120,7 +109,8 @@ impl SweepReport {
                 events: events(question, cell),
             }
         };
-        Self {
+        let mut report = Self {
+            verdict: String::new(),
             study: surrogate.provenance.study_name.clone(),
             source: "surrogate",
             complete: found.is_complete,
@@ -139,11 +129,13 @@ impl SweepReport {
             merged_parts: found.merged_parts,
             warnings: super::coverage::warning(found.surrogate).into_iter().collect(),
             elapsed_seconds: found.elapsed_seconds,
-        }
+        };
+        report.verdict = report.verdict_sentence();
+        report
     }
 
     /// Whether samples of some point are neither stable nor unstable.
-    fn has_marginal(&self) -> bool {
+    pub(super) fn has_marginal(&self) -> bool {
         self.points.iter().any(|point| point.marginal_proportion > 0.0)
     }
 
@@ -204,208 +196,4 @@ fn values(sweeps: &[Sweep], number: usize) -> Vec<f64> {
         .collect();
     values.reverse();
     values
-}
-
-impl fmt::Display for SweepReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (points, each) = (count(self.points.len() as u64), count(self.samples));
-        let how = pace(self.samples as f64 * self.points.len() as f64, self.elapsed_seconds, self.merged_parts);
-        writeln!(
-            f,
-            "{}: {points} points with {each} samples each of the surrogate {how}, seed {}\n",
-            self.study, self.seed
-        )?;
-        if !self.complete {
-            let all: u64 = self.sweeps.iter().map(|sweep| u64::from(sweep.points)).product();
-            let tables = "no table or chart is written";
-            writeln!(f, "  incomplete             interrupted after {points} of {} points; {tables}", count(all))?;
-        }
-        if self.sampler != Sampler::MonteCarlo.name() {
-            writeln!(f, "  sampler                {}, {} replicates", self.sampler, self.replicates)?;
-        }
-        if !self.conditions.is_empty() {
-            writeln!(f, "  where                  {}", conditions_text(&self.conditions))?;
-        }
-        writeln!(f, "  judged by              {}", self.judged_by)?;
-        writeln!(f, "  surrogate band         {}\n", self.width_of_band())?;
-        match self.sweeps.len() {
-            _ if self.points.is_empty() => {}
-            2 => self.write_map(f)?,
-            _ => writeln!(f, "{}from, to: 95 % sampling interval", self.table())?,
-        }
-        self.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))?;
-        match self.files.is_empty() {
-            true => Ok(()),
-            false => writeln!(f, "\nwritten to {}", self.files.join(", ")),
-        }
-    }
-}
-
-impl SweepReport {
-    /// How much the band of the surrogate can differ from the share, at the worst point.
-    fn width_of_band(&self) -> String {
-        let bands = self.points.iter().filter_map(|point| Some((point.stable_proportion, point.surrogate_band?)));
-        let widest = bands.map(|(share, band)| (band.upper - share).max(share - band.lower)).reduce(f64::max);
-        match widest {
-            Some(widest) => {
-                format!("up to {} % away from the share, at the worst point", significant(100.0 * widest, 2))
-            }
-            None if self.max_re_residuals.is_empty() => "unknown: no point could be left out".to_owned(),
-            None => "of no point yet".to_owned(),
-        }
-    }
-
-    /// One line per point, with a bar.
-    fn table(&self) -> Table {
-        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-        let right = Align::Right;
-        let mut columns: Vec<(&str, Align)> = self.sweeps.iter().map(|sweep| (sweep.input.as_str(), right)).collect();
-        columns.extend([("stable", right), ("from", right), ("to", right)]);
-        let has_marginal = self.has_marginal();
-        columns.extend(has_marginal.then_some(("marginal", right)));
-        if self.can_diverge {
-            columns.extend([("flutter", right), ("divergence", right)]);
-        }
-        let events = self.points.first().map_or(&[][..], |point| &point.events);
-        columns.extend(events.iter().map(|event| (event.event.as_str(), right)));
-        columns.push(("", Align::Left));
-        let mut table = Table::new(&columns);
-        for point in &self.points {
-            let mut row: Vec<String> = point.values.iter().map(|&value| plain(value)).collect();
-            row.extend([point.stable_proportion, point.interval.lower, point.interval.upper].map(percent));
-            row.extend(has_marginal.then(|| percent(point.marginal_proportion)));
-            if self.can_diverge {
-                row.extend([point.flutter_proportion, point.divergence_proportion].map(percent));
-            }
-            row.extend(point.events.iter().map(|event| percent(event.proportion)));
-            row.push("█".repeat((LONGEST_BAR * point.stable_proportion.clamp(0.0, 1.0)).round() as usize));
-            table.row(row);
-        }
-        table
-    }
-
-    /// One character per point: rows are the first sweep, from its last value down, columns the second.
-    fn write_map(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [vertical, horizontal] = &self.sweeps[..] else { return Ok(()) };
-        let columns = horizontal.points as usize;
-        let (row_step, column_step) = (vertical.points.div_ceil(MOST_ROWS), horizontal.points.div_ceil(MOST_COLUMNS));
-        let label = |row: usize| plain(vertical.value(row as u32));
-        let width = (0..vertical.points as usize).map(|row| label(row).chars().count()).max().unwrap_or(0);
-        writeln!(f, "{:>width$}   stable: 0 to 9 tenths, · none, # all", vertical.input)?;
-        let rows = self.points.chunks(columns).enumerate().filter(|(row, _)| row.is_multiple_of(row_step as usize));
-        for (row, points) in rows.collect::<Vec<_>>().into_iter().rev() {
-            let shown = points.iter().step_by(column_step as usize);
-            let line: String = shown.map(|point| symbol(point, self.samples)).collect();
-            writeln!(f, "{:>width$}  |{line}", label(row))?;
-        }
-        let (from, to) = (plain(horizontal.from), plain(horizontal.to));
-        let gap =
-            columns.div_ceil(column_step as usize).saturating_sub(from.chars().count() + to.chars().count()).max(1);
-        writeln!(f, "{:width$}   {from}{}{to}  {}", "", " ".repeat(gap), horizontal.input)?;
-        if row_step > 1 || column_step > 1 {
-            writeln!(
-                f,
-                "shown: one of {row_step} rows and one of {column_step} columns; --table and --chart have all"
-            )?;
-        }
-        Ok(())
-    }
-}
-
-fn symbol(point: &SweepPoint, samples: u64) -> char {
-    match point.stable_samples {
-        0 => '·',
-        stable if stable == samples => '#',
-        _ => char::from_digit((10.0 * point.stable_proportion) as u32, 10).unwrap_or('9'),
-    }
-}
-
-/// A picture of the sweep, as an SVG file: a curve with its interval for one input, a map for two.
-pub fn sweep_chart(report: &SweepReport) -> String {
-    let chart = match &report.sweeps[..] {
-        [sweep] => curve(report, sweep),
-        [vertical, horizontal] => map(report, vertical, horizontal),
-        _ => return String::new(),
-    };
-    sheet("", &chart.description.clone(), &[chart], 1)
-}
-
-/// " where k_p = 15800000"
-fn title_of_conditions(report: &SweepReport) -> String {
-    match report.conditions.is_empty() {
-        true => String::new(),
-        false => format!(" where {}", conditions_text(&report.conditions)),
-    }
-}
-
-/// Points of a curve up to which each is marked.
-const MARKED: usize = 51;
-
-fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
-    let points = |part: fn(&SweepPoint) -> f64| -> Vec<[f64; 2]> {
-        report.points.iter().map(|point| [short(point.values[0]), short(100.0 * part(point))]).collect()
-    };
-    let line = |part: fn(&SweepPoint) -> f64| Marks::Line(points(part));
-    let band = |end: fn(Interval) -> f64| {
-        let ends = report
-            .points
-            .iter()
-            .filter_map(|point| Some([short(point.values[0]), short(100.0 * end(point.surrogate_band?))]));
-        Marks::Line(ends.collect())
-    };
-    let mut series = vec![
-        Series::new("surrogate band", Color::Orange, band(|band| band.lower)),
-        Series::new("surrogate band", Color::Orange, band(|band| band.upper)),
-        Series::new("95 % interval", Color::Gray, line(|point| point.interval.lower)),
-        Series::new("95 % interval", Color::Gray, line(|point| point.interval.upper)),
-        Series::new("stable", Color::Blue, line(|point| point.stable_proportion)),
-    ];
-    if report.has_marginal() {
-        series.push(Series::new("marginal", Color::Purple, line(|point| point.marginal_proportion)));
-    }
-    if report.can_diverge || report.has_marginal() {
-        series.push(Series::new("flutter", Color::Red, line(|point| point.flutter_proportion)));
-        series.push(Series::new("divergence", Color::Green, line(|point| point.divergence_proportion)));
-    }
-    if report.points.len() <= MARKED {
-        let marks = Marks::Symbols(points(|point| point.stable_proportion), Symbol::Circle);
-        series.push(Series::new("stable", Color::Blue, marks));
-    }
-    Chart {
-        title: format!("{}: stability over {}{}", report.study, sweep.input, title_of_conditions(report)),
-        description: format!(
-            "Share of stable samples at {} values of {}, with its interval.",
-            sweep.points, sweep.input
-        ),
-        x: Axis::linear(sweep.input.clone()),
-        y: Axis::linear("stable, %").between(0.0, 100.0),
-        series,
-        guides: Vec::new(),
-    }
-}
-
-fn map(report: &SweepReport, vertical: &Sweep, horizontal: &Sweep) -> Chart {
-    let centres = |sweep: &Sweep| (0..sweep.points).map(|number| short(sweep.value(number))).collect();
-    let cells = Cells {
-        x: centres(horizontal),
-        y: centres(vertical),
-        values: report.points.iter().map(|point| point.stable_proportion).collect(),
-    };
-    Chart {
-        title: format!(
-            "{}: stability over {} and {}{}",
-            report.study,
-            vertical.input,
-            horizontal.input,
-            title_of_conditions(report)
-        ),
-        description: format!(
-            "Share of stable samples at {} values of {} and {} of {}.",
-            vertical.points, vertical.input, horizontal.points, horizontal.input
-        ),
-        x: Axis::linear(horizontal.input.clone()).between(horizontal.from, horizontal.to),
-        y: Axis::linear(vertical.input.clone()).between(vertical.from, vertical.to),
-        series: vec![Series::new("stable", Color::Blue, Marks::Cells(cells))],
-        guides: Vec::new(),
-    }
 }

@@ -1,4 +1,4 @@
-//! Aligned text tables and numbers for people.
+//! Aligned text tables.
 
 use std::fmt;
 
@@ -11,7 +11,10 @@ pub enum Align {
     Right,
 }
 
-/// A table of text cells.
+/// Spaces between columns.
+const GAP: usize = 2;
+
+/// A table of text cells. As text it keeps to 80 columns, or to the width of the format: `{table:120}`.
 ///
 /// # Examples
 ///
@@ -73,63 +76,75 @@ impl Table {
     }
 }
 
+impl Table {
+    /// The same with one column more.
+    pub(super) fn with_last_column(mut self, head: &str, cells: impl Iterator<Item = String>) -> Self {
+        self.aligns.push(Align::Left);
+        let cells = std::iter::once(head.to_owned()).chain(cells);
+        self.rows.iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
+        self
+    }
+
+    /// Columns of text that it takes.
+    pub(super) fn width(&self) -> usize {
+        let widths = self.widths();
+        widths.iter().sum::<usize>() + GAP * widths.len().saturating_sub(1)
+    }
+
+    fn widths(&self) -> Vec<usize> {
+        let width = |k: usize| self.rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+        (0..self.aligns.len()).map(width).collect()
+    }
+
+    /// The same in tables of at most `width` columns of text, each with the words that rows begin with.
+    fn folded(&self, width: usize) -> Vec<Vec<usize>> {
+        let widths = self.widths();
+        let keys = self.aligns.iter().take_while(|align| **align == Align::Left).count().min(widths.len());
+        let start: Vec<usize> = (0..keys).collect();
+        let length = |columns: &[usize]| columns.iter().map(|&k| widths[k] + GAP).sum::<usize>();
+        let (mut parts, mut part) = (Vec::new(), start.clone());
+        for column in keys..widths.len() {
+            if part.len() > keys && length(&part) + widths[column] > width {
+                parts.push(std::mem::replace(&mut part, start.clone()));
+            }
+            part.push(column);
+        }
+        parts.push(part);
+        parts
+    }
+}
+
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = |k: usize| self.rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..self.aligns.len()).map(width).collect();
-        for row in &self.rows {
-            let mut line = String::new();
-            for ((cell, &width), align) in row.iter().zip(&widths).zip(&self.aligns) {
-                if !line.is_empty() {
-                    line.push_str("  ");
-                }
-                match align {
-                    Align::Left => line.push_str(&format!("{cell:<width$}")),
-                    Align::Right => line.push_str(&format!("{cell:>width$}")),
-                }
+        let widths = self.widths();
+        for (number, columns) in self.folded(super::layout::width(f)).iter().enumerate() {
+            if number > 0 {
+                writeln!(f)?;
             }
-            writeln!(f, "{}", line.trim_end())?;
+            for row in &self.rows {
+                let cell = |&k: &usize| match self.aligns[k] {
+                    Align::Left => format!("{:<width$}", row[k], width = widths[k]),
+                    Align::Right => format!("{:>width$}", row[k], width = widths[k]),
+                };
+                let cells: Vec<String> = columns.iter().map(cell).collect();
+                writeln!(f, "{}", cells.join(&" ".repeat(GAP)).trim_end())?;
+            }
         }
         Ok(())
     }
 }
 
-/// `value` with so many significant digits; powers of ten only for very large and very small numbers.
-///
-/// # Examples
-///
-/// ```
-/// use pcc::report::significant;
-/// assert_eq!(significant(3641.65497, 5), "3641.7");
-/// assert_eq!(significant(-0.00012345, 3), "-0.000123");
-/// assert_eq!(significant(1.5e-9, 3), "1.50e-9");
-/// ```
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !value.is_finite() {
-        return value.to_string();
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    if !(-5..9).contains(&exponent) {
-        return format!("{value:.*e}", digits.saturating_sub(1));
-    }
-    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
-    format!("{value:.decimals$}")
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// A number as people write it, with six digits at most and no zeros after the last: for values that were chosen.
-///
-/// # Examples
-///
-/// ```
-/// use pcc::report::plain;
-/// assert_eq!(plain(0.1 + 0.2), "0.3");
-/// assert_eq!((plain(15.2e6), plain(-1e-9)), ("15200000".to_owned(), "-1e-9".to_owned()));
-/// ```
-pub fn plain(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    let size = rounded.abs();
-    if size != 0.0 && !(1e-4..1e9).contains(&size) { format!("{rounded:e}") } else { rounded.to_string() }
+    #[test]
+    fn wide_tables_are_folded_and_keep_what_rows_begin_with() {
+        let mut table = Table::new(&[("mode", Align::Left), ("mean", Align::Right), ("deviation", Align::Right)]);
+        table.row(["re_1", &"1".repeat(20), &"2".repeat(20)]);
+        let text = format!("{table:44}");
+        assert!(text.lines().all(|line| line.chars().count() <= 44), "{text}");
+        assert_eq!(text.lines().filter(|line| line.starts_with("re_1")).count(), 2, "{text}");
+        assert_eq!(format!("{table:48}").lines().count(), 2);
+    }
 }

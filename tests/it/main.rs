@@ -2,6 +2,7 @@
 
 mod support;
 
+mod answers;
 mod certificates;
 mod closed_groups;
 mod clusters;

@@ -198,35 +198,28 @@ impl MethodRow {
 }
 
 impl fmt::Display for RunReport {
+    /// The answer stands last, where it is seen.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let heading =
             |f: &mut fmt::Formatter<'_>, text: &str| writeln!(f, "── {text} {}\n", "─".repeat(76 - text.len()));
+        let Self { build, eval, compare, methods } = self;
+        let columns = f.width().unwrap_or(80);
         heading(f, "build")?;
-        writeln!(f, "{}", self.build)?;
-        heading(f, "evaluate")?;
-        writeln!(f, "{}", self.eval)?;
+        writeln!(f, "{}", text(build, f))?;
         heading(f, "compare with the model")?;
-        writeln!(f, "{}", self.compare)?;
-        if self.methods.len() > 1 {
+        writeln!(f, "{}", text(compare, f))?;
+        if methods.len() > 1 {
             heading(f, "methods")?;
-            writeln!(f, "{}", MethodRow::table(&self.methods))?;
+            writeln!(f, "{:columns$}", MethodRow::table(methods))?;
         }
         heading(f, "answer")?;
-        let Self { build, eval, compare, .. } = self;
-        writeln!(
-            f,
-            "The system is stable in {:.2} % of cases, by a surrogate built from {} model runs.\n\
-             On {} points where the model was run as well, the proportion is {} % off and {:.2} % of points are \
-             misclassified.\n\
-             The surrogate is in {}; sample it again with\n\n    pcc eval {} -n 1e6",
-            100.0 * eval.stable_proportion,
-            build.direct_computations,
-            count(compare.samples),
-            compare.relative_error_percent.map_or("infinitely".to_owned(), |error| format!("{error:.2}")),
-            compare.misclassified_percent,
-            build.file,
-            quoted(&build.file)
-        )?;
-        self.eval.warnings.iter().try_for_each(|warning| writeln!(f, "\nwarning: {warning}"))
+        writeln!(f, "{}", text(eval, f))?;
+        writeln!(f, "The surrogate is in {}; sample it again with\n\n    pcc eval {}", build.file, quoted(&build.file))
     }
+}
+
+/// A report as it is asked for: with details or without, in so many columns.
+fn text(report: &impl fmt::Display, f: &fmt::Formatter<'_>) -> String {
+    let columns = f.width().unwrap_or(80);
+    if f.alternate() { format!("{report:#columns$}") } else { format!("{report:columns$}") }
 }

@@ -66,3 +66,8 @@ pub fn csv_rows(path: &str) -> Vec<Vec<f64>> {
     // The verdict at the end of a row is a word.
     rows.lines().skip(1).map(|line| line.split(',').map_while(|cell| cell.parse().ok()).collect()).collect()
 }
+
+/// Text as if a terminal had no end.
+pub fn in_one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

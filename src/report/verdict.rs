@@ -1,0 +1,141 @@
+//! The answer in a sentence: how often unstable, which mode, at what frequency, in which way, and which input decides.
+
+use super::eval::{EvalReport, ModeReport, RealReport};
+use super::judgement::MarginReport;
+use super::numbers::{plain, share, share_range, significant};
+use super::sensitivity::SensitivityReport;
+use super::survey::conditions_text;
+use pcc_evaluate::foundation::{count, plural};
+
+/// Below this the smaller of stable and unstable is the one that is named.
+const RARE: f64 = 0.01;
+
+/// Modes that are unstable less often than this share of the first are not in the sentence.
+const WORTH_NAMING: f64 = 0.1;
+
+/// Modes, and inputs, in the sentence at most.
+const MOST_NAMED: usize = 3;
+
+/// Inputs with this part of the first one's share decide as well.
+const AS_WELL: f64 = 0.5;
+
+/// What can be unstable: a mode or a real eigenvalue.
+struct Culprit {
+    name: String,
+    unstable: f64,
+    verb: &'static str,
+    frequency: Option<f64>,
+}
+
+impl EvalReport {
+    /// Whether the share of unstable samples is the one to name: it is rare.
+    pub(super) fn names_unstable(&self) -> bool {
+        self.unstable_proportion < RARE && self.marginal_proportion == 0.0
+    }
+
+    pub(super) fn verdict_sentence(&self) -> String {
+        let where_asked = match self.conditions.is_empty() {
+            true => String::new(),
+            false => format!(" with {}", conditions_text(&self.conditions)),
+        };
+        let mut reasons = Vec::new();
+        if self.unstable_proportion > 0.0 {
+            reasons.extend(self.culprits());
+            reasons.extend(self.sensitivity.as_ref().and_then(deciding_inputs));
+        }
+        let reasons = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join("; ")) };
+        format!("{}{where_asked} {}{reasons}.{}", self.study, self.shares(), self.unknown())
+    }
+
+    /// How often.
+    fn shares(&self) -> String {
+        let [stable, marginal, unstable] =
+            [self.stable_proportion, self.marginal_proportion, self.unstable_proportion].map(share);
+        let is_unstable = match self.margin {
+            None => "unstable".to_owned(),
+            Some(MarginReport::GrowthRate(rate)) => format!("not stable by {} 1/s", plain(rate)),
+            Some(MarginReport::DampingRatio(ratio)) => format!("below the damping ratio {}", plain(ratio)),
+        };
+        if self.undamped {
+            let never = self.unstable_proportion == 0.0;
+            let unstable = if never { String::new() } else { format!(", {is_unstable} in {unstable}") };
+            return format!("is undamped: marginal in {marginal} of cases{unstable}");
+        }
+        if self.unstable_proportion == 0.0 && self.marginal_proportion == 0.0 {
+            let most = share_range(0.0, self.intervals.unstable.upper);
+            return format!("is never {is_unstable} in {} samples ({most}, 95 %)", count(self.samples));
+        }
+        let marginal = match self.marginal_proportion > 0.0 {
+            true => format!(", marginal in {marginal}"),
+            false => String::new(),
+        };
+        match self.stable_proportion < RARE && marginal.is_empty() {
+            true => format!("is {is_unstable} in all but {stable} of cases"),
+            false => format!("is {is_unstable} in {unstable} of cases{marginal}"),
+        }
+    }
+
+    /// Which modes, in which way and at what frequencies.
+    fn culprits(&self) -> Option<String> {
+        let has_margin = self.margin.is_some();
+        let mode = |mode: &ModeReport| Culprit {
+            name: format!("mode {}", mode.mode),
+            unstable: mode.unstable_share,
+            verb: match (has_margin, mode.flutter_share >= mode.divergence_share) {
+                (true, _) => "decays too slowly",
+                (false, true) if mode.divergence_share > WORTH_NAMING * mode.flutter_share => "flutters or diverges",
+                (false, true) => "flutters",
+                (false, false) if mode.flutter_share > WORTH_NAMING * mode.divergence_share => "diverges or flutters",
+                (false, false) => "diverges",
+            },
+            frequency: (mode.flutter_share > 0.0).then_some(mode.frequency_hz.mean),
+        };
+        let real = |real: &RealReport| Culprit {
+            name: real.name.clone(),
+            unstable: real.divergence_share,
+            verb: if has_margin { "decays too slowly" } else { "diverges" },
+            frequency: None,
+        };
+        let mut all: Vec<Culprit> = self.modes.iter().map(mode).chain(self.real_eigenvalues.iter().map(real)).collect();
+        all.retain(|culprit| culprit.unstable > 0.0);
+        all.sort_by(|a, b| b.unstable.total_cmp(&a.unstable));
+        let least = WORTH_NAMING * all.first()?.unstable;
+        let (named, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|culprit| culprit.unstable >= least);
+        let text = |Culprit { name, verb, frequency, .. }: &Culprit| match frequency {
+            Some(frequency) => format!("{name} {verb} at about {} Hz", significant(*frequency, 3)),
+            None => format!("{name} {verb}"),
+        };
+        let mut texts: Vec<String> = named.iter().take(MOST_NAMED).map(text).collect();
+        match named.len().saturating_sub(MOST_NAMED) + others.len() {
+            0 => {}
+            1 => texts.push("another more rarely".to_owned()),
+            more => texts.push(format!("{} more rarely", plural(more, "other"))),
+        }
+        Some(texts.join(", "))
+    }
+
+    /// What the model did not answer.
+    fn unknown(&self) -> String {
+        match (self.unanswered_proportion, self.bounds) {
+            (Some(unanswered), Some(bounds)) => format!(
+                " The model did not answer in {}: {} are stable, whatever it would have answered.",
+                share(unanswered),
+                share_range(bounds.stable.lower, bounds.stable.upper)
+            ),
+            _ => String::new(),
+        }
+    }
+}
+
+/// The inputs that decide stability: the first, and those that do about as much.
+fn deciding_inputs(sensitivity: &SensitivityReport) -> Option<String> {
+    let ranked = sensitivity.ranked();
+    let first = ranked.first().filter(|(_, total)| *total > 0.0)?.1;
+    let names: Vec<&str> =
+        ranked.iter().take(MOST_NAMED).filter(|(_, total)| *total >= AS_WELL * first).map(|(name, _)| *name).collect();
+    Some(match names[..] {
+        [only] => format!("{only} decides"),
+        [ref before @ .., last] => format!("{} and {last} decide most", before.join(", ")),
+        [] => return None,
+    })
+}

@@ -1,0 +1,131 @@
+//! The answer comes first and fits a terminal, and shares near 0 and 1 keep their digits in every face.
+
+use crate::support::command::{output, pcc};
+use crate::support::repository;
+use std::fs;
+use std::path::Path;
+
+/// A folder with the shipped clutch of eight inputs.
+fn clutch() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["clutch-r8.pcc", "clutch-r8.toml"] {
+        fs::copy(repository("surrogates").join(name), folder.path().join(name)).unwrap();
+    }
+    folder
+}
+
+/// One oscillator with Re λ = x − 1.9999955, x from 0 to 2: unstable in 2.25·10⁻⁶ of all cases on one side.
+fn rare() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let study = r#"
+        format = 1
+        name = "rare"
+        [model]
+        kind = "matrices"
+        A = [["x - 1.9999955", 20], [-20, "x - 1.9999955"]]
+        [inputs]
+        x = { distribution = "uniform", lower = 0.0, upper = 2.0 }
+    "#;
+    fs::write(folder.path().join("rare.toml"), study).unwrap();
+    output(folder.path(), &["build", "rare.toml"]);
+    folder
+}
+
+fn widest(text: &str) -> usize {
+    text.lines().map(|line| line.chars().count()).max().unwrap_or(0)
+}
+
+#[test]
+fn the_answer_is_a_sentence_and_takes_twenty_lines() {
+    let folder = clutch();
+    let text = output(folder.path(), &["eval", "clutch-r8.pcc", "-n", "1e6"]);
+    assert!(text.starts_with("clutch-r8 is unstable in 80.0"), "{text}");
+    let sentence = text.split("\n\n").next().unwrap().replace('\n', " ");
+    for part in ["mode 4 flutters", "Hz", "mu decides"] {
+        assert!(sentence.contains(part), "{sentence}");
+    }
+    assert!(text.lines().count() <= 20 && widest(&text) <= 80, "{text}");
+    let sure = text.lines().position(|line| line.contains("verified bound")).unwrap();
+    assert!(sure < 15, "{text}");
+    assert!(!text.contains("re_c0"), "components are details");
+    let report = output(folder.path(), &["eval", "clutch-r8.pcc", "-n", "1e6", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["verdict"], sentence);
+}
+
+#[test]
+fn no_line_of_a_report_is_wider_than_eighty_columns() {
+    let folder = clutch();
+    let commands: [&[&str]; 9] = [
+        &["eval", "clutch-r8.pcc", "-n", "1e5", "--details"],
+        &[
+            "eval",
+            "clutch-r8.pcc",
+            "-n",
+            "1e5",
+            "--critical",
+            "mu",
+            "--quantiles",
+            "--histogram",
+            "--events",
+            "max_re<-1",
+        ],
+        &["eval", "clutch-r8.pcc", "-n", "1e4", "--sweep", "mu=0:0.5:9"],
+        &["eval", "clutch-r8.pcc", "-n", "1e3", "--sweep", "mu=0:0.5:20", "--sweep", "k_p=15.2e6:16.8e6:101"],
+        &["inspect", "clutch-r8.pcc", "--details"],
+        &["compare", "clutch-r8.pcc", "--study", "clutch-r8.toml", "-n", "500", "--details"],
+        &["certify", "clutch-r8.pcc", "--study", "clutch-r8.toml", "--runs", "50", "-o", "certified.pcc"],
+        &["reference", "clutch-r8.toml", "-n", "500", "--details"],
+        &["build", "clutch-r8.toml", "-o", "built.pcc", "--details"],
+    ];
+    for command in commands {
+        let text = output(folder.path(), command);
+        assert!(widest(&text) <= 80, "{command:?}: {text}");
+    }
+    let inspected = output(folder.path(), &["inspect", "certified.pcc"]);
+    assert!(widest(&inspected) <= 80, "{inspected}");
+}
+
+#[test]
+fn a_rare_share_is_told_from_none_in_every_face() {
+    let folder = rare();
+    let path = folder.path();
+    let arguments = ["eval", "rare.pcc", "-n", "2e7", "--events", "flutter"];
+    let report: serde_json::Value =
+        serde_json::from_str(&output(path, &[&arguments[..], &["--json"]].concat())).unwrap();
+    let unstable = report["unstable_proportion"].as_f64().unwrap();
+    assert!(unstable > 1e-6 && unstable < 4e-6, "{unstable}");
+    let verdict = report["verdict"].as_str().unwrap();
+    assert!(verdict.starts_with("rare is unstable in ") && verdict.contains("·10⁻⁶"), "{verdict}");
+    let text = output(path, &arguments);
+    let facts: Vec<&str> = text.lines().filter(|line| line.starts_with("  ")).collect();
+    for name in ["unstable", "sampling interval"] {
+        let line = facts.iter().find(|line| line.trim_start().starts_with(name)).unwrap();
+        assert!(line.contains("·10⁻"), "{text}");
+    }
+    assert!(facts.iter().filter(|line| line.trim_start().starts_with("flutter")).all(|line| line.contains("·10⁻")));
+    assert!(!text.contains("100.000") && !text.contains(" 0.000 %"), "{text}");
+    table_and_chart(path);
+    let made = output(path, &["report", "rare.pcc", "-n", "2e7", "-o", "rare.html"]);
+    assert!(made.contains("rare.html"), "{made}");
+    let page = fs::read_to_string(path.join("rare.html")).unwrap();
+    assert!(page.contains("·10⁻⁶") && !page.contains("100.000 %"), "the page tells it from none");
+}
+
+/// The points of a sweep, as a table and as a picture.
+fn table_and_chart(path: &Path) {
+    let sweep = ["eval", "rare.pcc", "-n", "1000", "--sweep", "x=1:1.9:4", "--table", "t.csv", "--chart", "c.svg"];
+    let text = output(path, &sweep);
+    // 1000 of 1000 are stable, but no more than that is known.
+    assert!(text.contains("1 − ") || text.contains("99."), "{text}");
+    assert!(fs::read_to_string(path.join("c.svg")).unwrap().contains("<svg"));
+}
+
+#[test]
+fn what_never_happened_is_bounded() {
+    let folder = rare();
+    let text = output(folder.path(), &["eval", "rare.pcc", "-n", "1000"]);
+    assert!(text.starts_with("rare is never unstable in 1 000 samples (0 to 0."), "{text}");
+    let failed = pcc(folder.path(), &["eval", "rare.pcc", "-n", "0"]);
+    assert_eq!(failed.status.code(), Some(2));
+}
