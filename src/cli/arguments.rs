@@ -8,7 +8,7 @@ const FIRST_STEPS: &str = "\
 First steps:
   pcc run                                the built-in clutch study, end to end
   pcc build STUDY.toml                   build a surrogate from a study
-  pcc eval SURROGATE.pcc -n 1e6          stability proportion from the surrogate alone
+  pcc eval SURROGATE.pcc                 stability proportion from the surrogate alone
   pcc help COMMAND                       everything about one command
 
 Exit codes: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130 interrupted.";

@@ -7,10 +7,12 @@ mod arguments;
 mod commands;
 mod context;
 mod inputs;
+mod old_spellings;
 mod overwrite;
 mod points;
 mod question_options;
 mod shared_options;
+mod study_of;
 mod terminal;
 
 use crate::error::{FAILED, INTERRUPTED};
@@ -39,15 +41,17 @@ enum Ending {
 /// Runs pcc with these arguments, the first of them the program's name: 0 done, 1 a requested check did not hold, 2 bad
 /// usage or input, 130 interrupted.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> ExitCode {
+    let (arguments, remarks) = old_spellings::modern(arguments.into_iter().map(Into::into));
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
+            remarks.iter().for_each(|remark| complain(remark));
             let _ = error.print();
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
             return ExitCode::from(if asked { 0 } else { FAILED });
         }
     };
-    run_command(&arguments)
+    run_command(&arguments, &remarks)
 }
 
 /// Says what went wrong; the exit code that goes with it.
@@ -85,11 +89,12 @@ fn print(text: &str) -> anyhow::Result<()> {
     }
 }
 
-fn run_command(arguments: &Arguments) -> ExitCode {
+fn run_command(arguments: &Arguments, remarks: &[String]) -> ExitCode {
     let (pool, context) = match prepare(arguments) {
         Ok(prepared) => prepared,
         Err(error) => return failed(&error),
     };
+    remarks.iter().for_each(|remark| context.say(remark));
     let code = match pool.install(|| arguments.command.run(&context)) {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::CheckFailed) => ExitCode::from(1),

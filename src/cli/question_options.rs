@@ -1,4 +1,4 @@
-//! Questions as they are typed: `mu=0.1..0.2`, `mu=0:0.5:101`, `max_re<-1`, `max_re=-20:20:40`.
+//! Questions as they are typed: `mu=0.1..0.2`, `mu=0..0.5:101`, `max_re<-1`, `max_re=-20..20:40`.
 
 use clap::{Args, ValueEnum};
 use pcc_evaluate::evaluation::{Condition, Event, Sampler, Sweep};
@@ -23,7 +23,7 @@ pub(super) struct QuestionOptions {
 
     /// Set INPUT to POINTS values one after the other, each with all samples; give it twice for a stability map, more
     /// often for a longer table. Without --histogram, --quantiles and --critical
-    #[arg(long, value_name = "INPUT=FROM:TO:POINTS", value_parser = sweep, conflicts_with = "points")]
+    #[arg(long, value_name = "INPUT=FROM..TO:POINTS", value_parser = sweep, conflicts_with = "points")]
     pub sweep: Vec<Sweep>,
 
     /// Also count the samples with max_re, re_K, im_K, frequency_K, damping_K (mode K) or a component below or above a
@@ -34,7 +34,7 @@ pub(super) struct QuestionOptions {
     /// Also show the histogram of a quantity, as in --events [default: max_re]
     #[arg(
         long,
-        value_name = "QUANTITY[=LOWER:UPPER:BINS]",
+        value_name = "QUANTITY[=LOWER..UPPER:BINS]",
         value_parser = histogram,
         num_args = 0..=1,
         default_missing_value = "max_re",
@@ -93,11 +93,11 @@ pub(super) fn condition(text: &str) -> Result<Condition, String> {
     Ok(Condition { input, lower, upper })
 }
 
-/// `INPUT=FROM:TO:POINTS`.
+/// `INPUT=FROM..TO:POINTS`.
 pub(super) fn sweep(text: &str) -> Result<Sweep, String> {
-    const FORM: &str = "write INPUT=FROM:TO:POINTS, like mu=0:0.5:101";
+    const FORM: &str = "write INPUT=FROM..TO:POINTS, like mu=0..0.5:101";
     let (input, value) = named(text).ok_or(FORM)?;
-    let (from, to, points) = triple(value).ok_or(FORM)?;
+    let (from, to, points) = divided_range(value).ok_or(FORM)?;
     if points < 2 {
         return Err("a sweep has at least 2 points, its first and its last value".to_owned());
     }
@@ -117,14 +117,14 @@ pub(super) fn event(text: &str) -> Result<Event, String> {
     Ok(Event { quantity: quantity.to_owned(), below: rest.starts_with('<'), threshold })
 }
 
-/// `QUANTITY` or `QUANTITY=LOWER:UPPER:BINS`.
+/// `QUANTITY` or `QUANTITY=LOWER..UPPER:BINS`.
 pub(super) fn histogram(text: &str) -> Result<HistogramRequest, String> {
-    const FORM: &str = "write QUANTITY or QUANTITY=LOWER:UPPER:BINS, like max_re=-20:20:40";
+    const FORM: &str = "write QUANTITY or QUANTITY=LOWER..UPPER:BINS, like max_re=-20..20:40";
     if !text.contains('=') {
         return Ok(HistogramRequest { quantity: text.trim().to_owned(), bins: None });
     }
     let (quantity, value) = named(text).ok_or(FORM)?;
-    Ok(HistogramRequest { quantity, bins: Some(triple(value).ok_or(FORM)?) })
+    Ok(HistogramRequest { quantity, bins: Some(divided_range(value).ok_or(FORM)?) })
 }
 
 /// A probability.
@@ -153,9 +153,10 @@ fn named(text: &str) -> Option<(String, &str)> {
     (!name.is_empty()).then(|| (name.to_owned(), value))
 }
 
-fn triple(text: &str) -> Option<(f64, f64, u32)> {
-    let parts: Vec<&str> = text.split(':').collect();
-    let [from, to, count] = parts[..] else { return None };
+/// `FROM..TO:COUNT`.
+fn divided_range(text: &str) -> Option<(f64, f64, u32)> {
+    let (range, count) = text.split_once(':')?;
+    let (from, to) = range.split_once("..")?;
     // Also 1e3; more than fits is too many in any case, and refused as such.
     let count = number(count).filter(|count| count.fract() == 0.0 && *count >= 0.0)?;
     Some((number(from)?, number(to)?, count as u32))
@@ -175,12 +176,12 @@ mod tests {
         assert_eq!(condition("mu=0.1..0.2"), Ok(mu(0.1, 0.2)));
         assert_eq!(condition("mu = -1e-3 .. .5"), Ok(mu(-1e-3, 0.5)));
         assert_eq!(condition("mu=0.3"), Ok(mu(0.3, 0.3)));
-        assert_eq!(sweep("mu=0:0.5:101"), Ok(Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 101 }));
+        assert_eq!(sweep("mu=0..0.5:101"), Ok(Sweep { input: "mu".to_owned(), from: 0.0, to: 0.5, points: 101 }));
         let margin = |below| Event { quantity: "max_re".to_owned(), below, threshold: -1.0 };
         assert_eq!((event("max_re<-1"), event("max_re > -1")), (Ok(margin(true)), Ok(margin(false))));
         let request = |bins| HistogramRequest { quantity: "re_3".to_owned(), bins };
         assert_eq!(histogram("re_3"), Ok(request(None)));
-        assert_eq!(histogram("re_3=-20:20:40"), Ok(request(Some((-20.0, 20.0, 40)))));
+        assert_eq!(histogram("re_3=-20..20:40"), Ok(request(Some((-20.0, 20.0, 40)))));
         assert_eq!(shard("2/3"), Ok(Shard { number: 2, of: 3 }));
         assert_eq!(level("0.99"), Ok(0.99));
     }
@@ -190,13 +191,24 @@ mod tests {
         for text in ["", "mu", "=1", "mu=", "mu=1..", "mu=..2", "mu=1..2..3", "mu=nan", "mu=1..inf", "mu=a"] {
             assert!(condition(text).is_err(), "{text}");
         }
-        for text in ["", "mu", "mu=0:1", "mu=0:1:0", "mu=0:1:1", "mu=0:1:2.5", "mu=0:1:-3", "mu=0:1:2:3", "=0:1:2"] {
+        for text in [
+            "",
+            "mu",
+            "mu=0..1",
+            "mu=0..1:0",
+            "mu=0..1:1",
+            "mu=0..1:2.5",
+            "mu=0..1:-3",
+            "mu=0..1:2:3",
+            "=0..1:2",
+            "mu=..1:2",
+        ] {
             assert!(sweep(text).is_err(), "{text}");
         }
         for text in ["", "max_re", "max_re<", "<1", "max_re=1", "max_re<x", "max_re<<1"] {
             assert!(event(text).is_err(), "{text}");
         }
-        for text in ["max_re=", "max_re=1", "max_re=1:2", "max_re=1:2:x", "=1:2:3"] {
+        for text in ["max_re=", "max_re=1", "max_re=1..2", "max_re=1..2:x", "=1..2:3"] {
             assert!(histogram(text).is_err(), "{text}");
         }
         for text in ["", "1", "3/3", "4/3", "0/0", "-1/3", "a/3", "1/b", "1/2/3"] {

@@ -4,24 +4,17 @@ use clap::{Args, ValueEnum};
 use pcc_compile::campaign::Recording;
 use std::path::PathBuf;
 
-/// Random samples, or given points.
+/// Points that are given, instead of random ones.
 #[derive(Debug, Args)]
-pub(super) struct SamplingOptions {
-    /// Number of samples, as in 1000000 or 1e6
-    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, allow_negative_numbers = true)]
-    pub samples: Option<u64>,
-
-    /// Seed of the samples
-    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
-    pub seed: u64,
-
+#[group(skip)]
+pub(super) struct PointsOptions {
     /// CSV file of points to evaluate instead of samples
     #[arg(long, value_name = "IN.csv", requires = "out")]
     pub points: Option<PathBuf>,
 
     /// CSV file for the results at these points: the point, re_k and im_k of each mode (re_k_b and real_j where there
     /// are real eigenvalues), max_re, stable, verdict
-    #[arg(long, value_name = "OUT.csv", requires = "points", conflicts_with = "samples")]
+    #[arg(long, value_name = "OUT.csv", requires = "points")]
     pub out: Option<PathBuf>,
 
     /// Accept points outside the inputs' domain, where a surrogate knows nothing
@@ -112,6 +105,9 @@ pub(super) fn run_count(text: &str) -> Result<u64, String> {
         _ => Err("use at most 10000000: the answers are kept in memory".to_owned()),
     }
 }
+
+/// Samples of a surrogate where no number of them was asked for.
+pub(super) const SAMPLES: &str = "1000000";
 
 pub(super) fn percentage(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -433,8 +433,9 @@ fn bad_points_are_refused_with_row_and_remedy() {
 fn bad_usage_is_refused() {
     let folder = workplace();
     let mut messages = String::new();
-    let cases: [&[&str]; 14] = [
-        &["eval", "surrogate.pcc"],
+    let cases: [&[&str]; 15] = [
+        &["eval"],
+        &["certify", "surrogate.pcc"],
         &["eval", "surrogate.pcc", "-n", "0"],
         &["eval", "surrogate.pcc", "-n", "1.5"],
         &["eval", "surrogate.pcc", "-n", "10", "--points", "points.csv", "--out", "x.csv"],
@@ -696,7 +697,7 @@ fn invariants_workplace() -> tempfile::TempDir {
 #[test]
 fn certificates_are_added_and_shown() {
     let folder = invariants_workplace();
-    let certify = ["certify", "surrogate.pcc", "--study", "study.toml", "-m", "200"];
+    let certify = ["certify", "surrogate.pcc", "--study", "study.toml", "-n", "200"];
     assert_output!("certify", output(folder.path(), &certify));
     let other = [&certify[..], &["--seed", "2", "-o", "both.json"]].concat();
     let text = output(folder.path(), &other);
@@ -721,7 +722,7 @@ fn certificates_that_would_mislead_are_refused() {
     let other = text("surrogates/clutch-r2.toml").replace("[inputs]", "[model.constants]\nplate_mass = 41.0\n[inputs]");
     fs::write(folder.path().join("other.toml"), other).unwrap();
     let before = fs::read(folder.path().join("surrogate.pcc")).unwrap();
-    let of_other = ["certify", "surrogate.pcc", "--study", "other.toml", "-m", "20"];
+    let of_other = ["certify", "surrogate.pcc", "--study", "other.toml", "-n", "20"];
     let message = refusal(folder.path(), &of_other);
     assert!(message.contains("asks another question") && message.contains("--force"), "{message}");
     assert_eq!(fs::read(folder.path().join("surrogate.pcc")).unwrap(), before, "nothing was written");
@@ -729,11 +730,11 @@ fn certificates_that_would_mislead_are_refused() {
     assert!(forced.contains("of another problem"), "{forced}");
     let text = output(folder.path(), &["eval", "surrogate.pcc", "-n", "1000"]);
     assert!(text.contains("verified bound     none yet"), "a bound of another problem is not shown: {text}");
-    let own = ["certify", "surrogate.pcc", "--study", "study.toml", "-m", "20"];
+    let own = ["certify", "surrogate.pcc", "--study", "study.toml", "-n", "20"];
     output(folder.path(), &own);
     let message = refusal(folder.path(), &own);
     assert!(message.contains("has a certificate of seed 1 already"), "{message}");
-    let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--study", "study.toml", "-m", "0"]);
+    let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--study", "study.toml", "-n", "0"]);
     assert!(message.contains("use at least 1"), "{message}");
 }
 

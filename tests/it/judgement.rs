@@ -208,7 +208,7 @@ fn undamped_systems_are_called_so_by_every_face() {
     let certificate = &json(path, &["inspect", "built.pcc"])["certificates"][0];
     assert!(certificate["unstable"][0].as_f64().unwrap() > 0.2, "{certificate}");
 
-    output(path, &["eval", "built.pcc", "-n", "1000", "--sweep", "k=-2:6:9", "--table", "sweep.csv"]);
+    output(path, &["eval", "built.pcc", "-n", "1000", "--sweep", "k=-2..6:9", "--table", "sweep.csv"]);
     let sweep = fs::read_to_string(path.join("sweep.csv")).unwrap();
     assert!(sweep.lines().next().unwrap().contains("marginal_proportion"), "{sweep}");
 

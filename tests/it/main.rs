@@ -9,6 +9,7 @@ mod clusters;
 mod clutch_reference;
 mod command_line;
 mod coverage;
+mod defaults;
 mod derivatives;
 mod determinism;
 mod endings;

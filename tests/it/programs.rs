@@ -83,11 +83,11 @@ fn programs_are_built_evaluated_and_certified() {
     assert!(recorded.iter().all(|record| record.seconds > 0.0));
 
     // Runs of a certificate are recorded, too, and used again.
-    output(folder.path(), &["certify", "program.pcc", "--study", "study.toml", "-m", "20"]);
+    output(folder.path(), &["certify", "program.pcc", "--study", "study.toml", "-n", "20"]);
     assert_eq!(started(folder.path()).len(), runs + 20);
     output(
         folder.path(),
-        &["certify", "program.pcc", "--study", "study.toml", "-m", "20", "-o", "twice.pcc", "--seed", "2"],
+        &["certify", "program.pcc", "--study", "study.toml", "-n", "20", "-o", "twice.pcc", "--seed", "2"],
     );
     assert_eq!(started(folder.path()).len(), runs + 40);
     let compared = output(folder.path(), &["compare", "program.pcc", "--study", "study.toml", "-n", "30"]);
@@ -557,7 +557,7 @@ fn failures_count_as_disagreement_both_ways_if_asked_for() {
     fs::write(folder.path().join("in.csv"), "mu,k\n0.1,1.5\n0.49,1.5\n").unwrap();
     let said = output(folder.path(), &["eval", "program.pcc", "--points", "in.csv", "--out", "out.csv"]);
     assert!(said.contains("warning: the model did not answer near 1 of them"), "{said}");
-    let certify = ["certify", "program.pcc", "--study", "study.toml", "-m", "40"];
+    let certify = ["certify", "program.pcc", "--study", "study.toml", "-n", "40"];
     let ends_at_the_first = |arguments: &[&str]| {
         let ended = pcc(folder.path(), arguments);
         assert!(ended.status.code() == Some(2) && stderr(&ended).contains("failed"), "{}", stderr(&ended));

@@ -31,7 +31,7 @@ macro_rules! assert_output {
 fn conditions_events_quantiles_and_histograms_are_shown() {
     let folder = workplace();
     let question = ["eval", "clutch-r3.pcc", "-n", "1e5", "--where", "mu=0.05..0.15,k_p=15.8e6"];
-    let asked = ["--events", "max_re<-1,re_4>0", "--quantiles", "0.01,0.5,0.999", "--histogram", "max_re=-2:6:8"];
+    let asked = ["--events", "max_re<-1,re_4>0", "--quantiles", "0.01,0.5,0.999", "--histogram", "max_re=-2..6:8"];
     assert_output!("conditional", output(folder.path(), &[&question[..], &asked].concat()));
     assert_output!(
         "sobol",
@@ -45,10 +45,10 @@ fn conditions_events_quantiles_and_histograms_are_shown() {
 #[test]
 fn sweeps_are_shown_as_tables_and_maps_and_written_as_csv_and_svg() {
     let folder = workplace();
-    let line = ["eval", "clutch-r3.pcc", "-n", "4096", "--sweep", "mu=0:0.2:9", "--events", "max_re<-1"];
+    let line = ["eval", "clutch-r3.pcc", "-n", "4096", "--sweep", "mu=0..0.2:9", "--events", "max_re<-1"];
     let files = ["--table", "line.csv", "--chart", "line.svg"];
     assert_output!("sweep", output(folder.path(), &[&line[..], &files].concat()));
-    let map = ["eval", "clutch-r8.pcc", "-n", "1000", "--sweep", "mu=0:0.2:9", "--sweep", "gamma_2=0.76:0.84:33"];
+    let map = ["eval", "clutch-r8.pcc", "-n", "1000", "--sweep", "mu=0..0.2:9", "--sweep", "gamma_2=0.76..0.84:33"];
     let files = ["--table", "map.csv", "--chart", "map.svg"];
     assert_output!("map", output(folder.path(), &[&map[..], &files].concat()));
     let rows = |name| csv::Reader::from_path(folder.path().join(name)).unwrap().records().map(Result::unwrap).count();
@@ -76,7 +76,7 @@ fn merged_shards_print_what_one_evaluation_prints() {
     let questions: [&[&str]; 3] = [
         &["-n", "100003", "--events", "max_re<-1", "--quantiles", "0.5", "--histogram", "re_4", "--where", "mu=0..0.3"],
         &["-n", "131072", "--sampler", "sobol", "--replicates", "4", "--seed", "7"],
-        &["-n", "5000", "--sweep", "mu=0:0.2:5"],
+        &["-n", "5000", "--sweep", "mu=0..0.2:5"],
     ];
     for question in questions {
         let eval = [&["eval", "clutch-r3.pcc"], question].concat();
@@ -146,18 +146,18 @@ fn bad_questions_are_refused_by_name() {
         eval(&["--where", "mu=0.3..0.1"]),
         eval(&["--where", "mu=low..high"]),
         eval(&["--where", "mu=0.1,mu=0.2"]),
-        eval(&["--sweep", "mu=0:0.5:0"]),
-        eval(&["--sweep", "mu=0:0.5:1"]),
-        eval(&["--sweep", "mu=0:0.9:5"]),
+        eval(&["--sweep", "mu=0..0.5:0"]),
+        eval(&["--sweep", "mu=0..0.5:1"]),
+        eval(&["--sweep", "mu=0..0.9:5"]),
         eval(&["--sweep", "mu=0:0.5"]),
-        eval(&["--sweep", "mu=0:0.5:2000", "--sweep", "k_p=15.2e6:16.8e6:2000"]),
-        eval(&["--sweep", "mu=0:0.5:5", "--where", "mu=0.1"]),
-        eval(&["--sweep", "mu=0:0.5:5", "--histogram", "max_re"]),
+        eval(&["--sweep", "mu=0..0.5:2000", "--sweep", "k_p=15.2e6..16.8e6:2000"]),
+        eval(&["--sweep", "mu=0..0.5:5", "--where", "mu=0.1"]),
+        eval(&["--sweep", "mu=0..0.5:5", "--histogram", "max_re"]),
         eval(&["--events", "max_re"]),
         eval(&["--events", "re_9<0"]),
         eval(&["--histogram", "speed"]),
-        eval(&["--histogram", "max_re=5:1:10"]),
-        eval(&["--histogram", "max_re=0:1:0"]),
+        eval(&["--histogram", "max_re=5..1:10"]),
+        eval(&["--histogram", "max_re=0..1:0"]),
         eval(&["--quantiles", "0.5,1.5"]),
         eval(&["--replicates", "4"]),
         eval(&["--sampler", "sobol", "--replicates", "1"]),
@@ -167,12 +167,12 @@ fn bad_questions_are_refused_by_name() {
         eval(&["--sampler", "halton"]),
         eval(&["--table", "x.csv"]),
         eval(&["--chart", "x.svg"]),
-        eval(&["--sweep", "mu=0:0.5:3", "--chart", "clutch-r3.pcc"]),
-        eval(&["--sweep", "mu=0:0.5:3", "--table", "clutch-r8.pcc"]),
-        eval(&["--sweep", "mu=0:0.5:3", "--chart", "x.png"]),
-        eval(&["--sweep", "mu=0:0.5:3", "--part", "x.part", "--table", "x.csv"]),
-        eval(&["--sweep", "mu=0:0.5:1e9"]),
-        eval(&["--sweep", "mu=0:0.5:50000", "--sampler", "sobol"]),
+        eval(&["--sweep", "mu=0..0.5:3", "--chart", "clutch-r3.pcc"]),
+        eval(&["--sweep", "mu=0..0.5:3", "--table", "clutch-r8.pcc"]),
+        eval(&["--sweep", "mu=0..0.5:3", "--chart", "x.png"]),
+        eval(&["--sweep", "mu=0..0.5:3", "--part", "x.part", "--table", "x.csv"]),
+        eval(&["--sweep", "mu=0..0.5:1e9"]),
+        eval(&["--sweep", "mu=0..0.5:50000", "--sampler", "sobol"]),
         eval(&["--where", "mu=0,1"]),
         eval(&["--shard", "0/3"]),
         eval(&["--shard", "3/3", "--part", "x.part"]),
@@ -296,7 +296,7 @@ fn an_interruption_prints_what_was_counted() {
     let said = interrupt_after(400, &["eval", "clutch-r8.pcc", "-n", "1e13", "--part", "x.part"]);
     assert_eq!((said.as_str(), files(folder.path())), ("", before));
     let sweep =
-        interrupt(&["eval", "clutch-r3.pcc", "-n", "1e9", "--sweep", "mu=0:0.5:1000", "--table", "x.csv", "--json"]);
+        interrupt(&["eval", "clutch-r3.pcc", "-n", "1e9", "--sweep", "mu=0..0.5:1000", "--table", "x.csv", "--json"]);
     assert!(sweep.contains("\"complete\": false") && sweep.contains("\"points\": ["), "{sweep}");
     assert!(!folder.path().join("x.csv").exists());
 }

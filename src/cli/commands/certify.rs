@@ -1,8 +1,9 @@
 //! `pcc certify`
 
-use crate::cli::inputs::{read_study, read_surrogate};
+use crate::cli::inputs::read_surrogate;
 use crate::cli::overwrite::{Output, claim};
 use crate::cli::shared_options::{Failures, RecordingOptions, sample_count, seed};
+use crate::cli::study_of::StudyFile;
 use crate::cli::{Context, Ending, about};
 use crate::report::CertifyReport;
 use anyhow::{Context as _, bail};
@@ -27,12 +28,19 @@ pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,
 
-    /// Study it was built from
+    /// Study it was built from [default: <name of the study>.toml beside the surrogate]
     #[arg(long, value_name = "STUDY")]
-    pub study: PathBuf,
+    pub study: Option<PathBuf>,
 
-    /// Number of fresh model runs
-    #[arg(short = 'm', long, value_name = "M", value_parser = sample_count, allow_negative_numbers = true)]
+    /// Number of model runs, all of them fresh
+    #[arg(
+        short = 'n',
+        long,
+        value_name = "N",
+        default_value = "300",
+        value_parser = sample_count,
+        allow_negative_numbers = true
+    )]
     pub runs: u64,
 
     /// Seed of the fresh points; a seed the file has a certificate for is refused
@@ -59,8 +67,8 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let artifact = read_surrogate(&options.surrogate)?;
     artifact.check_lossless().with_context(|| options.surrogate.display().to_string())?;
     let mut surrogate = artifact.surrogate;
-    let study = read_study(&options.study)?;
-    let (file, source) = (options.surrogate.display(), options.study.display());
+    let StudyFile { study, path } = context.study_of(options.study.as_deref(), &options.surrogate, &surrogate)?;
+    let (file, source) = (options.surrogate.display(), path.display());
     if study.problem_hash() != surrogate.provenance.problem_hash && !options.force {
         bail!(
             "{source}: asks another question than {file} was built for: model, constants, inputs or spectrum differ; give \

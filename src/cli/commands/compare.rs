@@ -1,7 +1,8 @@
 //! `pcc compare`
 
-use crate::cli::inputs::{read_study, read_surrogate};
+use crate::cli::inputs::read_surrogate;
 use crate::cli::shared_options::{Failures, RecordingOptions, percentage, sample_count, seed};
+use crate::cli::study_of::{StudyFile, runs_or_default};
 use crate::cli::{Context, Ending, complain, about};
 use crate::report::{CompareReport, significant};
 use clap::Args;
@@ -19,13 +20,13 @@ pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,
 
-    /// Study it was built from
+    /// Study it was built from [default: <name of the study>.toml beside the surrogate]
     #[arg(long, value_name = "STUDY")]
-    pub study: PathBuf,
+    pub study: Option<PathBuf>,
 
-    /// Number of points, as in 10000 or 1e4
+    /// Number of model runs, each at a point of its own, as in 10000 or 1e4 [default: 10000; of a program 100]
     #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, allow_negative_numbers = true)]
-    pub samples: u64,
+    pub runs: Option<u64>,
 
     /// Seed of the points
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
@@ -45,13 +46,14 @@ pub(in crate::cli) struct Options {
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
-    let study = read_study(&options.study)?;
+    let StudyFile { study, path } = context.study_of(options.study.as_deref(), &options.surrogate, &surrogate)?;
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
     let campaign = Campaign { counts_failures: options.failures == Failures::Count, ..books.campaign(&study) };
     let start = Instant::now();
-    let comparison = compare_with_model(&surrogate, campaign, options.samples, options.seed, &context.terminal)
+    let runs = runs_or_default(options.runs, &study);
+    let comparison = compare_with_model(&surrogate, campaign, runs, options.seed, &context.terminal)
         .inspect_err(|error| context.say_recorded_of(&books, error))
-        .map_err(|error| about(&options.study.display().to_string(), error))?;
+        .map_err(|error| about(&path.display().to_string(), error))?;
     let report = CompareReport::new(&study.name, &surrogate, &comparison, options.seed, start.elapsed().as_secs_f64());
     context.print(&report)?;
     match options.max_error {

@@ -5,7 +5,7 @@ use crate::cli::inputs::read_surrogate;
 use crate::cli::overwrite::{Output, claim, keep_inputs};
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
 use crate::cli::question_options::{QuestionOptions, Shard, shard};
-use crate::cli::shared_options::{Pictures, SamplingOptions};
+use crate::cli::shared_options::{Pictures, PointsOptions, SAMPLES, sample_count, seed};
 use crate::cli::{Context, Ending, about};
 use crate::report::PartReport;
 use anyhow::{Context as _, anyhow, bail};
@@ -28,15 +28,30 @@ use std::time::Instant;
 /// of a CSV file instead, whose columns are named like the inputs, in physical units; other columns are ignored.
 #[derive(Debug, Args)]
 #[command(
-    group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]),
-    override_usage = "pcc eval <SURROGATE> --samples <N> [OPTIONS]\n       pcc eval <SURROGATE> --points <IN.csv> --out <OUT.csv> [OPTIONS]"
+    override_usage = "pcc eval <SURROGATE> [--samples <N>] [OPTIONS]\n       pcc eval <SURROGATE> --points <IN.csv> --out <OUT.csv> [OPTIONS]"
 )]
 pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,
 
+    /// Number of samples, as in 1000000 or 1e6
+    #[arg(
+        short = 'n',
+        long,
+        value_name = "N",
+        default_value = SAMPLES,
+        value_parser = sample_count,
+        allow_negative_numbers = true,
+        conflicts_with_all = ["points", "out"]
+    )]
+    pub samples: u64,
+
+    /// Seed of the samples
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
     #[command(flatten)]
-    pub sampling: SamplingOptions,
+    pub given: PointsOptions,
 
     /// Also show where the system loses stability: the smallest value of INPUT, given the other inputs
     #[arg(long, value_name = "INPUT", conflicts_with_all = ["points", "sweep", "part"])]
@@ -64,10 +79,9 @@ pub(in crate::cli) struct Options {
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let name = &surrogate.provenance.study_name;
-    let sampling = &options.sampling;
-    if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
+    if let (Some(points), Some(out)) = (&options.given.points, &options.given.out) {
         keep_inputs(out, &[points, &options.surrogate])?;
-        context.print(&at_points(context, &surrogate, points, out, sampling.extrapolate)?)?;
+        context.print(&at_points(context, &surrogate, points, out, options.given.extrapolate)?)?;
         return Ok(Ending::Done);
     }
     let instructions = instructions(options.instructions.as_deref())?;
@@ -78,7 +92,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     if options.part.is_some() && (options.pictures.table.is_some() || options.pictures.chart.is_some()) {
         bail!("--part: a part has no table or chart; give --table and --chart to pcc merge");
     }
-    let hint = "ask for one with --sweep INPUT=FROM:TO:POINTS";
+    let hint = "ask for one with --sweep INPUT=FROM..TO:POINTS";
     check_pictures(&options.pictures, &question, &[&options.surrogate], hint)?;
     if let Some(file) = &options.part {
         claim(file, Output::Marked(MARK), &[&options.surrogate])?;
@@ -101,7 +115,7 @@ fn request(options: &Options) -> Request {
         histograms: asked.histogram.clone(),
         quantile_levels: asked.quantiles.clone(),
         critical: options.critical.clone(),
-        ..Request::plain(options.sampling.samples.unwrap_or(0), options.sampling.seed)
+        ..Request::plain(options.samples, options.seed)
     }
 }
 

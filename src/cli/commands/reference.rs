@@ -3,7 +3,8 @@
 use crate::cli::inputs::read_study;
 use crate::cli::overwrite::keep_inputs;
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
-use crate::cli::shared_options::{RecordingOptions, SamplingOptions};
+use crate::cli::shared_options::{PointsOptions, RecordingOptions, sample_count, seed};
+use crate::cli::study_of::runs_or_default;
 use crate::cli::{Context, Ending, about};
 use crate::report::EvalReport;
 use clap::Args;
@@ -16,13 +17,27 @@ use std::time::Instant;
 ///
 /// Direct computations at the points that eval takes with the same seed, or at the points of a CSV file.
 #[derive(Debug, Args)]
-#[command(group = clap::ArgGroup::new("what").required(true).args(["samples", "points"]))]
 pub(in crate::cli) struct Options {
     /// Study file
     pub study: PathBuf,
 
+    /// Number of model runs at random points, as in 10000 or 1e4 [default: 10000; of a program 100]
+    #[arg(
+        short = 'n',
+        long,
+        value_name = "N",
+        value_parser = sample_count,
+        allow_negative_numbers = true,
+        conflicts_with_all = ["points", "out"]
+    )]
+    pub runs: Option<u64>,
+
+    /// Seed of the random points
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
+    pub seed: u64,
+
     #[command(flatten)]
-    pub sampling: SamplingOptions,
+    pub given: PointsOptions,
 
     #[command(flatten)]
     pub recording: RecordingOptions,
@@ -30,23 +45,22 @@ pub(in crate::cli) struct Options {
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = read_study(&options.study)?;
-    let sampling = &options.sampling;
-    if let (Some(points), Some(out)) = (&sampling.points, &sampling.out) {
+    if let (Some(points), Some(out)) = (&options.given.points, &options.given.out) {
         keep_inputs(out, &[points, &options.study])?;
         let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
         let campaign = books.campaign(&study);
         let source = options.study.display().to_string();
-        context.print(&at_points(context, campaign, source, points, out, sampling.extrapolate)?)?;
+        context.print(&at_points(context, campaign, source, points, out, options.given.extrapolate)?)?;
         return Ok(Ending::Done);
     }
     let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
     let campaign = books.campaign(&study);
     let start = Instant::now();
-    let found = monte_carlo(campaign, sampling.samples.unwrap_or(0), sampling.seed, &context.terminal)
+    let found = monte_carlo(campaign, runs_or_default(options.runs, &study), options.seed, &context.terminal)
         .inspect_err(|_| context.say_recorded(&books))
         .map_err(|error| about(&options.study.display().to_string(), error))?;
     let elapsed = start.elapsed().as_secs_f64();
-    context.print(&EvalReport::of_model(&study.name, &found, study.spectrum.margin, sampling.seed, elapsed))?;
+    context.print(&EvalReport::of_model(&study.name, &found, study.spectrum.margin, options.seed, elapsed))?;
     Ok(Ending::Done)
 }
 

@@ -1,8 +1,9 @@
 //! `pcc report`
 
-use crate::cli::inputs::{read_study, read_surrogate};
+use crate::cli::inputs::read_surrogate;
 use crate::cli::overwrite::{Output, SURROGATE_PAGE, claim};
-use crate::cli::shared_options::{RecordingOptions, run_count, sample_count, seed};
+use crate::cli::shared_options::{RecordingOptions, SAMPLES, run_count, sample_count, seed};
+use crate::cli::study_of::{StudyFile, runs_or_default};
 use crate::cli::{Context, Ending, about};
 use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
 use anyhow::Context as _;
@@ -22,21 +23,18 @@ use std::time::Instant;
 /// Points of the surrogate that are kept for pictures.
 const POINTS: u64 = 20_000;
 
-/// Model runs, as many as the paper's reference; of programs, which take their time, fewer.
-const RUNS: u64 = 10_000;
-const PROGRAM_RUNS: u64 = 100;
-
 /// Put a surrogate on one page: an HTML file with its answer, pictures and tables
 ///
 /// Samples the surrogate and draws densities, modes over the inputs that matter most, Sobol' indices and the decay of
-/// its coefficients. With --study it also runs the model, and shows where the two differ. The page stands alone: no
-/// scripts, nothing to load.
+/// its coefficients. With --study or --runs it also runs the model, and shows where the two differ. The page stands
+/// alone: no scripts, nothing to load.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,
 
-    /// Study it was built from: the model is run and compared with the surrogate
+    /// Study it was built from: the model is run and compared with the surrogate [default with --runs: <name of the
+    /// study>.toml beside the surrogate; else no model is run]
     #[arg(long, value_name = "STUDY")]
     pub study: Option<PathBuf>,
 
@@ -45,11 +43,11 @@ pub(in crate::cli) struct Options {
     pub output: PathBuf,
 
     /// Number of samples of the surrogate, as in 1000000 or 1e6
-    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, default_value = "1000000")]
+    #[arg(short = 'n', long, value_name = "N", value_parser = sample_count, default_value = SAMPLES)]
     pub samples: u64,
 
-    /// Number of model runs with --study [default: 10000; of a program 100]
-    #[arg(long, value_name = "M", value_parser = run_count, requires = "study")]
+    /// Number of model runs that the surrogate is compared with [default with --study: 10000; of a program 100]
+    #[arg(long, value_name = "N", value_parser = run_count)]
     pub runs: Option<u64>,
 
     #[command(flatten)]
@@ -62,21 +60,23 @@ pub(in crate::cli) struct Options {
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let artifact = read_surrogate(&options.surrogate)?;
-    let study = options.study.as_deref().map(read_study).transpose()?;
-    let inputs: Vec<&Path> =
-        [Some(options.surrogate.as_path()), options.study.as_deref()].into_iter().flatten().collect();
-    claim(&options.output, Output::Marked(SURROGATE_PAGE), &inputs)?;
     let surrogate = &artifact.surrogate;
+    let study = (options.study.is_some() || options.runs.is_some())
+        .then(|| context.study_of(options.study.as_deref(), &options.surrogate, surrogate))
+        .transpose()?;
+    let inputs: Vec<&Path> =
+        [Some(&options.surrogate), study.as_ref().map(|file| &file.path)].into_iter().flatten().map(AsRef::as_ref).collect();
+    claim(&options.output, Output::Marked(SURROGATE_PAGE), &inputs)?;
     let start = Instant::now();
-    let model = match (&study, &options.study) {
-        (Some(study), Some(path)) => {
+    let model = match &study {
+        Some(StudyFile { study, path }) => {
             let what = path.display().to_string();
             check_problem(surrogate, study).with_context(|| what.clone())?;
             let books = context.books_of_sampling(study, &options.recording.to_recording())?;
             let campaign = books.campaign(study);
-            let default_runs = if study.model.is_external() { PROGRAM_RUNS } else { RUNS };
+            let runs = runs_or_default(options.runs, study);
             let found =
-                ModelSample::new(campaign, options.runs.unwrap_or(default_runs), options.seed, &context.terminal)
+                ModelSample::new(campaign, runs, options.seed, &context.terminal)
                     .and_then(|sample| Ok((sample.compare(surrogate)?, sample.max_re().to_vec())))
                     .inspect_err(|_| context.say_recorded(&books))
                     .map_err(|error| about(&what, error))?;
@@ -84,7 +84,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
             let compare = CompareReport::new(&surrogate.provenance.study_name, surrogate, &found.0, options.seed, seconds);
             Some((found.1, compare))
         }
-        _ => None,
+        None => None,
     };
     let (points, block) = at_random_points(surrogate, options.seed);
     let eval = context.sample(surrogate, options.samples, options.seed)?;

@@ -3,6 +3,7 @@
 use crate::cli::inputs::read_study;
 use crate::cli::overwrite::{Output, refuse_to_replace};
 use crate::cli::shared_options::{RecordingOptions, seed};
+use crate::cli::study_of::runs_or_default;
 use crate::cli::{Context, Ending, about};
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table};
 use anyhow::Context as _;
@@ -53,10 +54,6 @@ const PAPERS_STUDY: &str = include_str!("../../../surrogates/clutch-r8-eigenvalu
 const PAPERS_FIGURES: [&str; 4] = ["paper, sparse PC", "1706–2117", "3.15–5.85", "–"];
 
 const EVAL_SAMPLES: u64 = 1_000_000;
-/// As many direct computations as the paper's reference.
-const COMPARE_SAMPLES: u64 = 10_000;
-/// Programs take their time.
-const COMPARE_PROGRAM_RUNS: u64 = 100;
 const SAMPLE_SEED: u64 = 1;
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
@@ -128,9 +125,8 @@ fn build_and_compare(
     let books = Books::after_build(&study, &recording, &path)?;
     books.notes.iter().for_each(|note| context.note(note));
     let campaign = books.campaign(&study);
-    let samples = if study.model.is_external() { COMPARE_PROGRAM_RUNS } else { COMPARE_SAMPLES };
     let start = Instant::now();
-    let comparison = compare_with_model(&built.surrogate, campaign, samples, seed, &context.terminal)
+    let comparison = compare_with_model(&built.surrogate, campaign, runs_or_default(None, &study), seed, &context.terminal)
         .map_err(|error| about(source, error))
         .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
     let compare = CompareReport::new(&study.name, &built.surrogate, &comparison, seed, start.elapsed().as_secs_f64());
