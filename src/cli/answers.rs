@@ -1,6 +1,6 @@
 //! Answers of sessions on the terminal and in files of pictures: what `eval` and `merge` have in common.
 
-use super::overwrite::{Output, claim};
+use super::overwrite::{Output, PICTURE, SWEEP_COLUMNS, claim};
 use super::shared_options::Pictures;
 use super::{Context, Ending};
 use crate::report::{EvalReport, SweepReport, sweep_chart};
@@ -32,12 +32,16 @@ pub(super) fn check_pictures(
     inputs: &[&Path],
     hint: &str,
 ) -> anyhow::Result<()> {
-    for (option, file) in [("--table", &pictures.table), ("--chart", &pictures.chart)] {
+    let outputs = [
+        ("--table", &pictures.table, Output::Table(SWEEP_COLUMNS)),
+        ("--chart", &pictures.chart, Output::Marked(PICTURE)),
+    ];
+    for (option, file, output) in outputs {
         let Some(file) = file else { continue };
         if question.sweeps.is_empty() {
             bail!("{option}: there is no sweep to write; {hint}");
         }
-        claim(file, Output::Table, inputs)?;
+        claim(file, output, inputs)?;
     }
     let Some(chart) = &pictures.chart else { return Ok(()) };
     if question.sweeps.len() > 2 {

@@ -1,5 +1,6 @@
 //! What every command is given: where to print, whom to ask whether to stop, and work that several commands begin with.
 
+use super::overwrite::certificates_to_keep;
 use super::terminal::Terminal;
 use super::{about, complain, print};
 use crate::report::EvalReport;
@@ -93,7 +94,8 @@ impl Context {
         Ok(books)
     }
 
-    /// Builds the surrogate of `study`, read from `source`, and writes it.
+    /// Builds the surrogate of `study`, read from `source`, and writes it; over one with certificates only if it
+    /// `may_replace` them.
     pub fn build_to_file(
         &self,
         study: &Study,
@@ -101,12 +103,20 @@ impl Context {
         path: &Path,
         format: Format,
         recording: &Recording,
+        may_replace: bool,
     ) -> anyhow::Result<BuiltFile> {
+        let certificates = certificates_to_keep(path, may_replace)?;
         let built = build_to_file(study, path, format, recording, &self.terminal, &|note| self.note(note));
-        built.map_err(|error| match error {
+        let built = built.map_err(|error| match error {
             BuildFileError::Build(error) => about(source, error),
             other => other.into(),
-        })
+        })?;
+        match built.surrogate.certificates.len() {
+            _ if certificates == 0 => {}
+            0 => self.say(&format!("{} is another surrogate than before; its certificates are gone", path.display())),
+            _ => self.say(&format!("{} is the same surrogate as before and keeps its certificates", path.display())),
+        }
+        Ok(built)
     }
 
     /// The plain question: random samples of the whole domain, all of them.

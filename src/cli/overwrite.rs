@@ -1,31 +1,39 @@
 //! Files that commands write: what may be replaced by what.
 
 use anyhow::bail;
-use pcc_compile::campaign::journal;
-use pcc_evaluate::artifact::looks_like_a_surrogate;
+use pcc_evaluate::artifact::{self, looks_like_a_surrogate};
 use pcc_evaluate::foundation::check_writable;
-use pcc_evaluate::shard_file::MARK;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Bytes of a file that tell what it is.
-const START: u64 = 1024;
+/// Bytes of a file that tell what it is: the header of a table with some thousand columns.
+const START: u64 = 1 << 16;
 
 /// What an output is, which says which files it may take the place of.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Output {
+pub(super) enum Output<'a> {
     /// A surrogate, in the place of a surrogate.
     Surrogate,
     /// A file that has this mark near its start, in the place of its like.
-    Marked(&'static str),
-    /// A table or a picture, in the place of anything but a surrogate, a part of an evaluation, or a journal.
-    Table,
+    Marked(&'a str),
+    /// A table whose header has these neighbouring columns, in the place of its like.
+    Table(&'a str),
+    /// A table with this header, in the place of its like: with more columns it holds somebody's work.
+    TableWithHeader(&'a str),
 }
 
 /// What pages of a surrogate, and of the reproduced paper, have near their start.
 pub(super) const SURROGATE_PAGE: &str = "<meta name=\"generator\" content=\"pcc report ";
 pub(super) const REPRODUCTION_PAGE: &str = "<meta name=\"generator\" content=\"pcc reproduce ";
+
+/// What pictures have near their start.
+pub(super) const PICTURE: &str = "sheet-title";
+
+/// Columns of tables of sweeps, of points, and of recorded runs.
+pub(super) const SWEEP_COLUMNS: &str = "stable_samples,stable_proportion,lower,upper";
+pub(super) const RESULT_COLUMNS: &str = "max_re,stable";
+pub(super) const RECORD_COLUMNS: &str = "record,model,status,attempts,seconds";
 
 /// Refuses an output that would replace one of the command's own `inputs`, or a file of another kind: a study or data
 /// named by mistake.
@@ -38,16 +46,18 @@ pub(super) fn refuse_to_replace(path: &Path, output: Output, inputs: &[&Path]) -
     let is_read = File::open(path).and_then(|file| file.take(START).read_to_end(&mut start)).is_ok();
     let (is_empty, shown) = (is_read && start.is_empty(), path.display());
     match output {
-        Output::Surrogate if !(is_empty || is_read && looks_like_a_surrogate(&start)) => {
+        _ if is_empty => Ok(()),
+        Output::Surrogate if !(is_read && looks_like_a_surrogate(&start)) => {
             bail!("{shown}: exists and is not a surrogate; name another output, or remove it first")
         }
-        Output::Marked(mark)
-            if !(is_empty || is_read && start.windows(mark.len()).any(|window| window == mark.as_bytes())) =>
-        {
+        Output::Marked(mark) if !(is_read && holds(&start, mark)) => {
             bail!("{shown}: exists and was not made by pcc; name another output, or remove it first")
         }
-        Output::Table if !is_read || is_result(&start) => {
-            bail!("{shown}: is a surrogate, a part of an evaluation or a journal of model runs; name another output")
+        Output::Table(columns) if !(is_read && holds(header(&start), columns)) => {
+            bail!("{shown}: exists and is no such table ({columns}, …); name another output, or remove it first")
+        }
+        Output::TableWithHeader(expected) if !(is_read && header(&start) == expected.as_bytes()) => {
+            bail!("{shown}: exists and is no table of {expected}; name another output, or remove it first")
         }
         _ => Ok(()),
     }
@@ -60,7 +70,7 @@ pub(super) fn claim(path: &Path, output: Output, inputs: &[&Path]) -> anyhow::Re
 }
 
 /// Refuses an output that is one of the command's own inputs, which the result would destroy.
-pub(super) fn keep_inputs(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
+fn keep_inputs(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     let Ok(file) = path.canonicalize() else { return Ok(()) };
     for input in inputs {
         if input.canonicalize().is_ok_and(|input| input == file) {
@@ -70,6 +80,27 @@ pub(super) fn keep_inputs(path: &Path, inputs: &[&Path]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn is_result(start: &[u8]) -> bool {
-    looks_like_a_surrogate(start) || start.starts_with(MARK.as_bytes()) || start.starts_with(&journal::MAGIC)
+/// The number of certificates of the surrogate that a build is going to replace. Refuses to if there are any, unless
+/// the user has said that they may be lost: whether they hold for what is built is known after the build only, and each
+/// has cost model runs.
+pub(super) fn certificates_to_keep(path: &Path, may_be_lost: bool) -> anyhow::Result<usize> {
+    let known = path.is_file().then(|| artifact::read(path).ok()).flatten();
+    match known.map_or(0, |artifact| artifact.surrogate.certificates.len()) {
+        count if count == 0 || may_be_lost => Ok(count),
+        count => bail!(
+            "{}: has {count} certificate{}, which will be lost if the build gives another surrogate; name another \
+             output, or pass --replace",
+            path.display(),
+            if count == 1 { "" } else { "s" }
+        ),
+    }
+}
+
+fn holds(bytes: &[u8], text: &str) -> bool {
+    bytes.windows(text.len()).any(|window| window == text.as_bytes())
+}
+
+/// The first line of a table.
+fn header(start: &[u8]) -> &[u8] {
+    start.split(|byte| *byte == b'\n').next().unwrap_or_default().trim_ascii_end()
 }

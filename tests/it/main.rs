@@ -24,6 +24,7 @@ mod kills;
 mod layers;
 mod matrices;
 mod openturns;
+mod overwriting;
 mod programs;
 mod questions;
 mod readme;

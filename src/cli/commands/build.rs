@@ -38,6 +38,10 @@ pub(in crate::cli) struct Options {
     #[arg(long)]
     pub best: bool,
 
+    /// Build over a surrogate with certificates; they stay only if the build gives the same surrogate again
+    #[arg(long)]
+    pub replace: bool,
+
     /// Print the study with every default filled in, and build nothing
     #[arg(long)]
     pub show_study: bool,
@@ -73,7 +77,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     refuse_to_replace(&path, Output::Surrogate, &[])?;
     context.terminal.take_what_there_is(options.best);
     let source = options.study.display().to_string();
-    let built = context.build_to_file(&study, &source, &path, format, &options.recording.to_recording())?;
+    let built = context.build_to_file(&study, &source, &path, format, &options.recording.to_recording(), options.replace)?;
     context.print(&BuildReport::of_file(&study, &built, path.display().to_string()))?;
     Ok(Ending::Done)
 }

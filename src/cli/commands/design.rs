@@ -38,13 +38,16 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let source = options.study.display().to_string();
     let journal = options.journal.clone().unwrap_or_else(|| journal_here(&study));
     check(&study).with_context(|| source.clone())?;
-    claim(&options.emit, Output::Table, &[&options.study, &journal])?;
+    let inputs: Vec<String> = study.inputs.names().map(str::to_owned).collect();
+    let constants = study.model.answers().map_or(&[][..], |answers| &answers.constants);
+    let mut header = Vec::new();
+    write_points::<&[f64]>(&mut header, [], &inputs, constants, &[])?;
+    let header = String::from_utf8_lossy(&header);
+    claim(&options.emit, Output::TableWithHeader(header.trim_end()), &[&options.study, &journal])?;
     let contents = if journal.exists() { Journal::read(&journal)? } else { Contents::default() };
     notes_on(&journal, &contents).iter().for_each(|note| context.note(note));
     let step = ask(&study, &contents, &context.terminal).map_err(|error| about(&source, error))?;
     let (runs, open): (Vec<u64>, Vec<&[f64]>) = step.open().unzip();
-    let inputs: Vec<String> = study.inputs.names().map(str::to_owned).collect();
-    let constants = study.model.answers().map_or(&[][..], |answers| &answers.constants);
     save_with(&options.emit, |writer| write_points(writer, runs, &inputs, constants, &open).map_err(io::Error::other))?;
     context.print(&DesignReport {
         study: study.name.clone(),

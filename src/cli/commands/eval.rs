@@ -2,7 +2,7 @@
 
 use crate::cli::answers::{check_pictures, present};
 use crate::cli::inputs::read_surrogate;
-use crate::cli::overwrite::{Output, claim, keep_inputs};
+use crate::cli::overwrite::{Output, RESULT_COLUMNS, claim};
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
 use crate::cli::question_options::{QuestionOptions, Shard, shard};
 use crate::cli::shared_options::{Pictures, PointsOptions, SAMPLES, sample_count, seed};
@@ -80,7 +80,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let name = &surrogate.provenance.study_name;
     if let (Some(points), Some(out)) = (&options.given.points, &options.given.out) {
-        keep_inputs(out, &[points, &options.surrogate])?;
+        claim(out, Output::Table(RESULT_COLUMNS), &[points, &options.surrogate])?;
         context.print(&at_points(context, &surrogate, points, out, options.given.extrapolate)?)?;
         return Ok(Ending::Done);
     }

@@ -1,7 +1,7 @@
 //! `pcc journal`: what is recorded of model runs.
 
 use crate::cli::inputs::read_study;
-use crate::cli::overwrite::{Output, refuse_to_replace};
+use crate::cli::overwrite::{Output, RECORD_COLUMNS, refuse_to_replace};
 use crate::cli::{Context, Ending};
 use crate::report::{JournalModel, JournalReport};
 use anyhow::bail;
@@ -39,7 +39,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         contents.records.retain(|record| record.model == model);
     }
     if let Some(csv) = &options.csv {
-        refuse_to_replace(csv, Output::Table, &[&options.journal])?;
+        refuse_to_replace(csv, Output::Table(RECORD_COLUMNS), &[&options.journal])?;
         let names: Option<Vec<&str>> = study.as_ref().map(|study| study.inputs.names().collect());
         let inputs = contents.records.iter().map(|record| record.point.len()).max().unwrap_or(0);
         if names.is_none() && contents.records.iter().any(|record| record.point.len() != inputs) {

@@ -1,7 +1,7 @@
 //! `pcc reference`
 
 use crate::cli::inputs::read_study;
-use crate::cli::overwrite::keep_inputs;
+use crate::cli::overwrite::{Output, RESULT_COLUMNS, claim};
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
 use crate::cli::shared_options::{PointsOptions, RecordingOptions, sample_count, seed};
 use crate::cli::study_of::runs_or_default;
@@ -46,7 +46,7 @@ pub(in crate::cli) struct Options {
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = read_study(&options.study)?;
     if let (Some(points), Some(out)) = (&options.given.points, &options.given.out) {
-        keep_inputs(out, &[points, &options.study])?;
+        claim(out, Output::Table(RESULT_COLUMNS), &[points, &options.study])?;
         let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
         let campaign = books.campaign(&study);
         let source = options.study.display().to_string();

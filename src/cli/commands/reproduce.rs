@@ -1,6 +1,6 @@
 //! `pcc reproduce`
 
-use crate::cli::overwrite::{Output, REPRODUCTION_PAGE, claim};
+use crate::cli::overwrite::{Output, PICTURE, REPRODUCTION_PAGE, claim};
 use crate::cli::shared_options::{run_count, seed};
 use crate::cli::{Context, Ending, complain, about};
 use crate::report::{figure_sheets, short_table_2};
@@ -53,22 +53,19 @@ pub(in crate::cli) enum Part {
 /// What `table2.csv` starts with.
 const ROWS: &str = "r,method,order,direct_computations";
 
-/// What figures have near their start.
-const SHEET: &str = "sheet-title";
-
 /// The files that are written, and what each has near its start.
 fn targets(wanted: &Parts) -> Vec<(&'static str, &'static str)> {
     let mut targets = vec![("report.html", REPRODUCTION_PAGE)];
     if wanted.table_2 {
         let table = [("table2.csv", ROWS), ("table2.partial.csv", ROWS), ("table2.md", "# Table 2 of Kieu")];
         targets.extend(table);
-        targets.push(("errors.svg", SHEET));
+        targets.push(("errors.svg", PICTURE));
     }
     if wanted.figure_3 {
-        targets.push(("figure3.svg", SHEET));
+        targets.push(("figure3.svg", PICTURE));
     }
     if wanted.figure_4 {
-        targets.push(("figure4.svg", SHEET));
+        targets.push(("figure4.svg", PICTURE));
     }
     targets
 }

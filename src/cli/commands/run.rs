@@ -18,7 +18,7 @@ use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Build, evaluate and check a study end to end
@@ -31,9 +31,13 @@ pub(in crate::cli) struct Options {
     /// Study file [default: the built-in clutch with 8 uncertain parameters]
     pub study: Option<PathBuf>,
 
-    /// Folder for the surrogate
-    #[arg(short, long, value_name = "DIR", default_value = ".")]
-    pub output: PathBuf,
+    /// Folder for the surrogate [default: <name of the study>-run]
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+
+    /// Build over a surrogate with certificates; they stay only if the build gives the same surrogate again
+    #[arg(long)]
+    pub replace: bool,
 
     /// Seed of the design instead of the study's, and of all samples [default: the study's for the design, 1 for
     /// samples]
@@ -62,11 +66,12 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         None => Study::from_toml(BUILT_IN_STUDY).context("the built-in study")?,
     };
     let source = options.study.as_ref().map_or("the built-in study".to_owned(), |path| path.display().to_string());
-    std::fs::create_dir_all(&options.output)
-        .with_context(|| format!("folder {} cannot be created", options.output.display()))?;
+    let folder = options.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}-run", study.name)));
+    context.say(&format!("results go to the folder {}", folder.display()));
+    std::fs::create_dir_all(&folder).with_context(|| format!("folder {} cannot be created", folder.display()))?;
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
     let method = method_name(&study);
-    let (surrogate, build, compare) = build_and_compare(context, options, study, &source)?;
+    let (surrogate, build, compare) = build_and_compare(context, options, &folder, study, &source)?;
     let eval = context
         .sample(&surrogate, EVAL_SAMPLES, seed)
         .with_context(|| format!("after the surrogate was written to {}", build.file))?;
@@ -74,7 +79,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     if options.study.is_none() {
         for study in other_built_in_studies()? {
             let method = method_name(&study);
-            let (_, build, compare) = build_and_compare(context, options, study, &source)?;
+            let (_, build, compare) = build_and_compare(context, options, &folder, study, &source)?;
             methods.insert(0, MethodRow::new(method, &build, &compare));
         }
     }
@@ -108,19 +113,20 @@ fn method_name(study: &Study) -> &'static str {
     }
 }
 
-/// Builds the surrogate of `study` into the output folder and compares it with the model.
+/// Builds the surrogate of `study` into `folder` and compares it with the model.
 fn build_and_compare(
     context: &Context,
     options: &Options,
+    folder: &Path,
     mut study: Study,
     source: &str,
 ) -> anyhow::Result<(Surrogate, BuildReport, CompareReport)> {
     study.seed = options.seed.unwrap_or(study.seed);
     let seed = options.seed.unwrap_or(SAMPLE_SEED);
-    let path = options.output.join(format!("{}.{}", study.name, Format::Binary.extension()));
+    let path = folder.join(format!("{}.{}", study.name, Format::Binary.extension()));
     refuse_to_replace(&path, Output::Surrogate, &[])?;
     let recording = options.recording.to_recording();
-    let built = context.build_to_file(&study, source, &path, Format::Binary, &recording)?;
+    let built = context.build_to_file(&study, source, &path, Format::Binary, &recording, options.replace)?;
     let build = BuildReport::of_file(&study, &built, path.display().to_string());
     let books = Books::after_build(&study, &recording, &path)?;
     books.notes.iter().for_each(|note| context.note(note));

@@ -4,9 +4,9 @@ use super::{BuildError, Built, built};
 use crate::campaign::journal::JournalError;
 use crate::campaign::{Books, Failure, Note, Recording};
 use crate::study::Study;
-use pcc_evaluate::artifact::{Format, WriteError, encode};
+use pcc_evaluate::artifact::{self, Format, WriteError, decode, encode};
 use pcc_evaluate::foundation::{FileError, Observer, check_writable, save};
-use pcc_evaluate::surrogate::Surrogate;
+use pcc_evaluate::surrogate::{Certificate, Surrogate};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use thiserror::Error;
@@ -48,7 +48,8 @@ pub struct BuiltFile {
 }
 
 /// Builds the surrogate of `study` and writes it to `path`, which is tried before the first model run. `tell` is given
-/// what the user should know of recorded runs, when it is known.
+/// what the user should know of recorded runs, when it is known. Certificates of a surrogate that is replaced stay if
+/// the new one has the same content.
 ///
 /// # Errors
 ///
@@ -66,7 +67,7 @@ pub fn build_to_file(
     books.notes.iter().for_each(tell);
     let start = Instant::now();
     let model = study.model().map_err(BuildError::from)?;
-    let Built { surrogate, rigid_body_modes } = match built(books.campaign(study), model, observer) {
+    let Built { mut surrogate, rigid_body_modes } = match built(books.campaign(study), model, observer) {
         Ok(built) => built,
         Err(error) => {
             if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
@@ -77,7 +78,11 @@ pub fn build_to_file(
         }
     };
     let elapsed_seconds = start.elapsed().as_secs_f64();
-    let bytes = encode(&surrogate, format)?;
+    let mut bytes = encode(&surrogate, format)?;
+    surrogate.certificates = certificates_that_hold(path, &surrogate, &bytes);
+    if !surrogate.certificates.is_empty() {
+        bytes = encode(&surrogate, format)?;
+    }
     save(path, &bytes)?;
     let file = BuiltFile {
         surrogate,
@@ -94,4 +99,15 @@ pub fn build_to_file(
         false => books.close(),
     }
     Ok(file)
+}
+
+/// Certificates of the surrogate at `path`, if `built` computes and asks the same to the last bit.
+fn certificates_that_hold(path: &Path, built: &Surrogate, bytes: &[u8]) -> Vec<Certificate> {
+    let known = path.is_file().then(|| artifact::read(path).ok()).flatten();
+    let Some(known) = known.filter(|known| !known.surrogate.certificates.is_empty()) else { return Vec::new() };
+    let asks_the_same = known.surrogate.provenance.problem_hash == built.provenance.problem_hash;
+    match decode(bytes) {
+        Ok(new) if asks_the_same && new.content_id == known.content_id => known.surrogate.certificates,
+        _ => Vec::new(),
+    }
 }
