@@ -19,7 +19,14 @@ pub(super) fn modern(arguments: impl IntoIterator<Item = OsString>) -> (Vec<OsSt
     let mut remarks = Vec::new();
     let is_command = |name: &str| Command::has_subcommand(name);
     let place = arguments.iter().skip(1).position(|text| text.to_str().is_some_and(is_command));
-    let Some(place) = place.map(|place| place + 1) else { return (arguments, remarks) };
+    let Some(place) = place.map(|place| place + 1) else {
+        let has = |names: &[&str]| arguments.iter().any(|text| names.iter().any(|name| text == name));
+        if has(&["--version", "-V"]) && has(&["--verbose"]) {
+            arguments.retain(|text| text != "--version" && text != "-V");
+            arguments.insert(1, "version".into());
+        }
+        return (arguments, remarks);
+    };
     let command = arguments[place].to_string_lossy().into_owned();
     let mut option = String::new();
     for argument in &mut arguments[place + 1..] {
@@ -89,6 +96,14 @@ mod tests {
             ),
         ] {
             assert_eq!(read(old), (new.to_owned(), vec![remark.to_owned()]));
+        }
+    }
+
+    /// The parser ends at `--version`.
+    #[test]
+    fn a_verbose_version_is_a_command() {
+        for line in ["pcc --version --verbose", "pcc --verbose -V"] {
+            assert_eq!(read(line), ("pcc version --verbose".to_owned(), vec![]));
         }
     }
 

@@ -4,36 +4,41 @@ use clap::{Args, ValueEnum};
 use pcc_evaluate::evaluation::{Condition, Event, Sampler, Sweep};
 use pcc_evaluate::session::HistogramRequest;
 
+/// Groups of the help.
+const SAMPLED: &str = "What is sampled";
+pub(super) const ASKED: &str = "What is asked beside stability";
+
 /// What is asked beside the stability of random samples.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub(super) struct QuestionOptions {
     /// How samples are drawn
-    #[arg(long, value_enum, default_value = "monte-carlo", conflicts_with = "points")]
+    #[arg(long, help_heading = SAMPLED, value_enum, default_value = "monte-carlo", conflicts_with = "points")]
     pub sampler: SamplerName,
 
     /// Independent randomisations that the samples of sobol or latin-hypercube are divided among, at least 2; the error
     /// is estimated from their spread [default: 16]
-    #[arg(long, value_name = "R", conflicts_with = "points", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, help_heading = SAMPLED, value_name = "R", conflicts_with = "points", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub replicates: Option<u32>,
 
     /// Confine or fix inputs, in physical units, with decimal points: mu=0.1..0.2,k_p=15.8e6
-    #[arg(long = "where", value_name = "CONDITIONS", value_delimiter = ',', value_parser = condition, conflicts_with = "points")]
+    #[arg(long = "where", help_heading = SAMPLED, value_name = "CONDITIONS", value_delimiter = ',', value_parser = condition, conflicts_with = "points")]
     pub conditions: Vec<Condition>,
 
     /// Set INPUT to POINTS values one after the other, each with all samples; give it twice for a stability map, more
     /// often for a longer table. Without --histogram, --quantiles and --critical
-    #[arg(long, value_name = "INPUT=FROM..TO:POINTS", value_parser = sweep, conflicts_with = "points")]
+    #[arg(long, help_heading = ASKED, value_name = "INPUT=FROM..TO:POINTS", value_parser = sweep, conflicts_with = "points")]
     pub sweep: Vec<Sweep>,
 
     /// Also count the samples with max_re, re_K, im_K, frequency_K, damping_K (mode K) or a component below or above a
     /// value: 'max_re<-0.1,frequency_3>600'
-    #[arg(long, value_name = "EVENTS", value_delimiter = ',', value_parser = event, conflicts_with = "points")]
+    #[arg(long, help_heading = ASKED, value_name = "EVENTS", value_delimiter = ',', value_parser = event, conflicts_with = "points")]
     pub events: Vec<Event>,
 
     /// Also show the histogram of a quantity, as in --events [default: max_re]
     #[arg(
         long,
+        help_heading = ASKED,
         value_name = "QUANTITY[=LOWER..UPPER:BINS]",
         value_parser = histogram,
         num_args = 0..=1,
@@ -46,6 +51,7 @@ pub(super) struct QuestionOptions {
     /// 0.01,0.05,0.25,0.5,0.75,0.95,0.99]
     #[arg(
         long,
+        help_heading = ASKED,
         value_name = "LEVELS",
         value_delimiter = ',',
         value_parser = level,

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 /// Points that are given, instead of random ones.
 #[derive(Debug, Args)]
 #[group(skip)]
+#[command(next_help_heading = "Points instead of samples")]
 pub(super) struct PointsOptions {
     /// CSV file of points to evaluate instead of samples
     #[arg(long, value_name = "IN.csv", requires = "out")]
@@ -24,6 +25,7 @@ pub(super) struct PointsOptions {
 
 /// Where model runs are recorded.
 #[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Recorded model runs")]
 pub(super) struct RecordingOptions {
     /// Record model runs in this journal [default: those of programs in <name of the study>.journal, of a build beside
     /// the surrogate; others only while a build lasts]
@@ -66,6 +68,7 @@ pub(super) enum Failures {
 /// Where the results of a sweep go beside the terminal.
 #[derive(Debug, Args)]
 #[group(skip)]
+#[command(next_help_heading = "Results of a sweep")]
 pub(super) struct Pictures {
     /// CSV file for the points of --sweep: their values, samples, stable proportion, its interval, events
     #[arg(long, value_name = "FILE.csv")]

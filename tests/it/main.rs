@@ -18,6 +18,7 @@ mod field;
 mod full_expansions;
 mod golden_file;
 mod gradient_fits;
+mod help;
 mod invariants;
 mod judgement;
 mod kills;

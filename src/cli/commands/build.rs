@@ -11,6 +11,13 @@ use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc build belt.toml                          writes belt.pcc
+  pcc build belt.toml --resume                 goes on after whatever has stopped a build
+  pcc build belt.toml -o other.json --seed 2   another design, as JSON";
+
 /// Build a surrogate from a study
 ///
 /// Runs the model on a nested Latin hypercube design that grows until every component is fitted and the stability
@@ -18,6 +25,7 @@ use std::path::PathBuf;
 /// expansions (methods gpc and me-gpc) run it on a grid, or on a design whose size their degree fixes. The same study
 /// gives the same bytes on any number of threads.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Study file
     pub study: PathBuf,

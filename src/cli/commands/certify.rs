@@ -18,12 +18,19 @@ use std::time::Instant;
 /// Confidence level of certificates.
 const LEVEL: f64 = 0.95;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc certify belt.pcc                    300 model runs, and a bound that holds
+  pcc certify belt.pcc -n 1000 --seed 2   a narrower one, beside the first";
+
 /// Bound the true stability proportion by fresh model runs
 ///
 /// Runs the model at points that neither the build nor any evaluation has used, counts where surrogate and model
 /// disagree, and bounds the model's proportion from that: it holds however wrong the surrogate is, and is narrow where
 /// it is right. The certificate is added to the surrogate file, beside any earlier one.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,

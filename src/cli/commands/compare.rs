@@ -11,11 +11,18 @@ use pcc_compile::reference::compare_with_model;
 use std::path::PathBuf;
 use std::time::Instant;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc compare belt.pcc                                           with the study that lies beside it
+  pcc compare belt.pcc --study belt.toml -n 1000 --max-error 1   fails if the error is above 1 %";
+
 /// Compare a surrogate with its model at the same points
 ///
 /// Errors of the stability proportion, of means and variances, and the share of points on whose stability the two
 /// disagree. Refuses a study that asks another question than the surrogate answers.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,

@@ -1,14 +1,19 @@
 //! `pcc completions`
 
-use crate::cli::arguments::Arguments;
+use crate::cli::arguments::commands;
 use crate::cli::{Context, Ending, print};
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc completions bash > ~/.local/share/bash-completion/completions/pcc
+  pcc completions zsh > ~/.zfunc/_pcc";
+
 /// Print a completion script for a shell
-///
-/// For example: pcc completions bash > ~/.local/share/bash-completion/completions/pcc
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// The shell
     shell: Shell,
@@ -16,7 +21,7 @@ pub(in crate::cli) struct Options {
 
 pub(super) fn run(_: &Context, options: &Options) -> anyhow::Result<Ending> {
     let mut script = Vec::new();
-    clap_complete::generate(options.shell, &mut Arguments::command(), "pcc", &mut script);
+    clap_complete::generate(options.shell, &mut commands(), "pcc", &mut script);
     print(&String::from_utf8_lossy(&script))?;
     Ok(Ending::Done)
 }

@@ -11,8 +11,15 @@ use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc convert belt.pcc belt.json   readable
+  pcc convert belt.json belt.pcc   and back, to the same bytes";
+
 /// Convert a surrogate between binary (.pcc) and JSON (.json), without loss
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Surrogate file to read, binary or JSON
     pub input: PathBuf,

@@ -14,12 +14,19 @@ use pcc_evaluate::foundation::save_with;
 use std::io;
 use std::path::PathBuf;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc design rig.toml --emit rows.csv                         the points that are needed next
+  pcc design rig.toml --emit rows.csv --journal old.journal   with answers from elsewhere";
+
 /// Write the model runs that a build is waiting for as a table
 ///
 /// For models that something else than pcc runs: a scheduler, a cluster, a laboratory. Steps the build of STUDY as far
 /// as the recorded answers carry it, and writes the points whose answers it needs next. Run them, hand the answers over
 /// with pcc ingest, and repeat until there are no more: pcc build STUDY --resume then writes the surrogate.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Study file
     pub study: PathBuf,

@@ -4,7 +4,7 @@ use crate::cli::answers::{check_pictures, present};
 use crate::cli::inputs::read_surrogate;
 use crate::cli::overwrite::{Output, RESULT_COLUMNS, claim};
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
-use crate::cli::question_options::{QuestionOptions, Shard, shard};
+use crate::cli::question_options::{ASKED, QuestionOptions, Shard, shard};
 use crate::cli::shared_options::{Pictures, PointsOptions, SAMPLES, sample_count, seed};
 use crate::cli::{Context, Ending, about};
 use crate::report::PartReport;
@@ -20,14 +20,26 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// A group of the help.
+const PARTS: &str = "How it is computed";
+
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc eval belt.pcc                                              how likely it is to be stable
+  pcc eval belt.pcc --where mu=0.1..0.2 --events flutter         in a part of the domain
+  pcc eval belt.pcc --critical mu                                where it loses stability
+  pcc eval belt.pcc -n 1e5 --sweep mu=0..0.5:51 --chart mu.svg   along one input";
+
 /// Sample a surrogate: stability proportion, modes, moments, Sobol' indices, critical values
 ///
-/// Needs the surrogate file only. Samples can be confined to a part of the domain (--where), and the proportion be had
-/// along one input or over two (--sweep). The answer is the same for any number of threads; with --shard it can be
+/// Needs the surrogate file only. --where confines the samples to a part of the domain. --sweep gives the proportion
+/// along one input, or as a map over two. The answer is the same for any number of threads; with --shard it can be
 /// computed in parts, on any number of machines, for pcc merge to put together. With --points it evaluates the points
 /// of a CSV file instead, whose columns are named like the inputs, in physical units; other columns are ignored.
 #[derive(Debug, Args)]
 #[command(
+    after_help = EXAMPLES,
     override_usage = "pcc eval <SURROGATE> [--samples <N>] [OPTIONS]\n       pcc eval <SURROGATE> --points <IN.csv> --out <OUT.csv> [OPTIONS]"
 )]
 pub(in crate::cli) struct Options {
@@ -54,7 +66,7 @@ pub(in crate::cli) struct Options {
     pub given: PointsOptions,
 
     /// Also show where the system loses stability: the smallest value of INPUT, given the other inputs
-    #[arg(long, value_name = "INPUT", conflicts_with_all = ["points", "sweep", "part"])]
+    #[arg(long, help_heading = ASKED, value_name = "INPUT", conflicts_with_all = ["points", "sweep", "part"])]
     pub critical: Option<String>,
 
     #[command(flatten)]
@@ -64,15 +76,15 @@ pub(in crate::cli) struct Options {
     pub pictures: Pictures,
 
     /// Evaluate only this shard, numbers from 0: 0/8 to 7/8 are all of it
-    #[arg(long, value_name = "I/N", value_parser = shard, requires = "part")]
+    #[arg(long, help_heading = PARTS, value_name = "I/N", value_parser = shard, requires = "part")]
     pub shard: Option<Shard>,
 
     /// Write what was counted to FILE, for pcc merge
-    #[arg(long, value_name = "FILE", conflicts_with = "points")]
+    #[arg(long, help_heading = PARTS, value_name = "FILE", conflicts_with = "points")]
     pub part: Option<PathBuf>,
 
     /// Vector instructions to use [default: the fastest of this processor]; results do not depend on them
-    #[arg(long, value_name = "NAME", conflicts_with = "points", value_parser = PossibleValuesParser::new(InstructionSet::NAMES))]
+    #[arg(long, help_heading = PARTS, value_name = "NAME", conflicts_with = "points", value_parser = PossibleValuesParser::new(InstructionSet::NAMES))]
     pub instructions: Option<String>,
 }
 

@@ -12,6 +12,12 @@ use pcc_compile::mechanics::model::command::results_table::read_results;
 use std::fs::File;
 use std::path::PathBuf;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc ingest rig.toml answers.csv               all rows, or none if one is wrong
+  pcc ingest rig.toml corrected.csv --replace   answers that contradict earlier ones";
+
 /// Take answers to the points of a design from a table
 ///
 /// RESULTS.csv has the inputs of the table that pcc design wrote, and its column run if they have lost digits, and the
@@ -19,6 +25,7 @@ use std::path::PathBuf;
 /// come in any order, in part, and more than once; a row that contradicts an earlier answer is refused, and then none
 /// is taken.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Study file
     pub study: PathBuf,

@@ -6,8 +6,15 @@ use crate::report::InspectReport;
 use clap::Args;
 use std::path::PathBuf;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc inspect belt.pcc           inputs, components, degrees, errors
+  pcc inspect belt.pcc --check   fails if this program computes it otherwise";
+
 /// Show what is inside a surrogate file
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,

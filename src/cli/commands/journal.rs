@@ -12,8 +12,15 @@ use pcc_evaluate::foundation::{hexadecimal, save_with};
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc journal belt.journal                                    how many runs of which models
+  pcc journal belt.journal --study belt.toml --csv runs.csv   every run of one model, as a table";
+
 /// Show the model runs that are recorded in a journal
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Journal file
     pub journal: PathBuf,

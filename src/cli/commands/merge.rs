@@ -13,11 +13,18 @@ use pcc_evaluate::shard_file::{MARK, Part, merge as merge_parts};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc merge *.part                            what one evaluation would have printed
+  pcc merge 0.part 1.part --part first.part   two neighbouring parts as one";
+
 /// Put the parts of an evaluation together
 ///
 /// Takes the files that eval has written with --shard and --part, in any order, and prints what one evaluation of all
 /// samples would have printed. Parts of different evaluations, missing and repeated shards are refused.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Files that eval --part has written
     #[arg(required = true)]

@@ -39,4 +39,6 @@ commands! {
     Reproduce: reproduce,
     Convert: convert,
     Completions: completions,
+    Man: man,
+    Version: version,
 }

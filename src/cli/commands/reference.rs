@@ -13,10 +13,17 @@ use pcc_compile::reference::{PointReference, monte_carlo};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc reference belt.toml                                         10 000 model runs
+  pcc reference belt.toml --points points.csv --out results.csv   at points of yours";
+
 /// Sample the model itself: the reference for surrogates
 ///
 /// Direct computations at the points that eval takes with the same seed, or at the points of a CSV file.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Study file
     pub study: PathBuf,

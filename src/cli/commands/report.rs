@@ -23,12 +23,19 @@ use std::time::Instant;
 /// Points of the surrogate that are kept for pictures.
 const POINTS: u64 = 20_000;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc report belt.pcc                            writes report.html, without the model
+  pcc report belt.pcc --runs 1000 -o belt.html   with the model beside it";
+
 /// Put a surrogate on one page: an HTML file with its answer, pictures and tables
 ///
 /// Samples the surrogate and draws densities, modes over the inputs that matter most, Sobol' indices and the decay of
 /// its coefficients. With --study or --runs it also runs the model, and shows where the two differ. The page stands
 /// alone: no scripts, nothing to load.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Surrogate file
     pub surrogate: PathBuf,

@@ -13,6 +13,12 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc reproduce                             all of it, into reproduction/
+  pcc reproduce --only figure3 -o figures   figure 3 alone";
+
 /// Reproduce the paper: its table 2 and figures 3 and 4, and what lies beyond
 ///
 /// Builds the clutch by full, multi-element and sparse expansions of its eigenvalues and of invariants, for one to
@@ -21,6 +27,7 @@ use std::time::Instant;
 /// it is interrupted, the rows that are done are kept until the next run, in table2.partial.csv if there was a table
 /// already.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Only this part
     #[arg(long, value_enum)]

@@ -21,12 +21,19 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// What the help ends with.
+const EXAMPLES: &str = "\
+Examples:
+  pcc run                        the built-in study, into clutch-r8-run/
+  pcc run belt.toml -o results   a study of your own, into results/";
+
 /// Build, evaluate and check a study end to end
 ///
 /// Builds the surrogate, samples it a million times and compares it with ten thousand direct computations at the same
 /// points (a hundred, if a program makes them). Without STUDY it takes the built-in one: the clutch of the paper with
 /// all eight parameters uncertain.
 #[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
     /// Study file [default: the built-in clutch with 8 uncertain parameters]
     pub study: Option<PathBuf>,
