@@ -1,6 +1,7 @@
 //! What can be typed before and after the name of a command; what belongs to one is in its file.
 
 use super::commands::Command;
+use super::messages::STYLES;
 use clap::{CommandFactory, Parser, ValueHint};
 
 /// What the help ends with.
@@ -22,7 +23,7 @@ const GENERAL: &str = "All commands";
 /// functions of its eigenvalues, and writes them to a small file, the surrogate. Millions of samples of the surrogate
 /// then tell how often the machine is stable.
 #[derive(Debug, Parser)]
-#[command(name = "pcc", version, max_term_width = 110, after_help = FIRST_STEPS)]
+#[command(name = "pcc", version, styles = STYLES, max_term_width = 110, after_help = FIRST_STEPS)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -32,7 +33,7 @@ pub(super) struct Arguments {
     pub json: bool,
 
     /// Show every detail: all modes, inputs and components
-    #[arg(long, global = true, display_order = 99)]
+    #[arg(long, global = true, help_heading = GENERAL, display_order = 99)]
     pub details: bool,
 
     /// Number of threads [default: all processors]; results do not depend on it

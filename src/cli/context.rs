@@ -1,8 +1,9 @@
 //! What every command is given: where to print, whom to ask whether to stop, and work that several commands begin with.
 
+use super::about;
+use super::messages::{self, print, print_report};
 use super::overwrite::certificates_to_keep;
 use super::terminal::Terminal;
-use super::{about, complain, print};
 use crate::report::EvalReport;
 use pcc_compile::campaign::{Books, Note, Recording, RunError};
 use pcc_compile::compilation::{BuildFileError, BuiltFile, build_to_file};
@@ -43,18 +44,18 @@ impl Context {
     /// A remark on standard error, beside a report.
     pub fn say(&self, remark: &str) {
         if !self.quiet {
-            complain(remark);
+            messages::remark(remark);
         }
     }
 
     /// Prints a report: text for people, or one JSON document.
     pub fn print<R: Serialize + Display>(&self, report: &R) -> anyhow::Result<()> {
         let columns = columns();
-        print(&match (self.json, self.details) {
-            (true, _) => format!("{}\n", serde_json::to_string_pretty(report)?),
-            (false, true) => format!("{report:#columns$}"),
-            (false, false) => format!("{report:columns$}"),
-        })
+        match (self.json, self.details) {
+            (true, _) => print(&format!("{}\n", serde_json::to_string_pretty(report)?)),
+            (false, true) => print_report(&format!("{report:#columns$}")),
+            (false, false) => print_report(&format!("{report:columns$}")),
+        }
     }
 
     /// What the user should know of recorded runs.

@@ -6,7 +6,9 @@ mod answers;
 mod arguments;
 mod commands;
 mod context;
+mod hints;
 mod inputs;
+mod messages;
 mod old_spellings;
 mod overwrite;
 mod points;
@@ -20,9 +22,9 @@ use arguments::Arguments;
 use clap::Parser;
 use clap::error::ErrorKind;
 use context::Context;
+use messages::{complain, remark};
 use pcc_evaluate::foundation::is_interruption;
 use std::ffi::OsString;
-use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Mutex;
 use terminal::{Interrupt, Terminal};
@@ -45,7 +47,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            remarks.iter().for_each(|remark| complain(remark));
+            remarks.iter().for_each(|text| remark(text));
             let _ = error.print();
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
             return ExitCode::from(if asked { 0 } else { FAILED });
@@ -76,25 +78,12 @@ fn message(error: &anyhow::Error) -> String {
     })
 }
 
-/// A message on standard error; there is nobody to tell if that fails.
-fn complain(message: &str) {
-    let _ = writeln!(io::stderr(), "pcc: {message}");
-}
-
-/// Text on standard output. A reader like `head` that has seen enough is no error.
-fn print(text: &str) -> anyhow::Result<()> {
-    match io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => Ok(result?),
-    }
-}
-
 fn run_command(arguments: &Arguments, remarks: &[String]) -> ExitCode {
     let (pool, context) = match prepare(arguments) {
         Ok(prepared) => prepared,
         Err(error) => return failed(&error),
     };
-    remarks.iter().for_each(|remark| context.say(remark));
+    remarks.iter().for_each(|text| context.say(text));
     let code = match pool.install(|| arguments.command.run(&context)) {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::CheckFailed) => ExitCode::from(1),

@@ -50,3 +50,23 @@ fn the_version_tells_what_a_report_of_a_fault_needs() {
         }
     }
 }
+
+/// Without a terminal there are no colours, unless they are forced; NO_COLOR wins.
+#[test]
+fn colours_are_for_terminals() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |arguments: &[&str], environment: &[(&str, &str)]| {
+        let mut command = assert_cmd::Command::cargo_bin("pcc").unwrap();
+        for name in ["NO_COLOR", "CLICOLOR_FORCE", "CLICOLOR"] {
+            command.env_remove(name);
+        }
+        let found =
+            command.current_dir(folder.path()).args(arguments).envs(environment.iter().copied()).output().unwrap();
+        String::from_utf8([found.stdout, found.stderr].concat()).unwrap()
+    };
+    for arguments in [&["--help"][..], &["eval"], &["eval", "none.pcc"]] {
+        assert!(!said(arguments, &[]).contains('\u{1b}'), "{arguments:?}");
+        assert!(said(arguments, &[("CLICOLOR_FORCE", "1")]).contains('\u{1b}'), "{arguments:?}");
+        assert!(!said(arguments, &[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]).contains('\u{1b}'), "{arguments:?}");
+    }
+}

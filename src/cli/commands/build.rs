@@ -87,6 +87,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let source = options.study.display().to_string();
     let built = context.build_to_file(&study, &source, &path, format, &options.recording.to_recording(), options.replace)?;
     context.print(&BuildReport::of_file(&study, &built, path.display().to_string()))?;
+    context.hint_at("eval", &path, "to sample it");
     Ok(Ending::Done)
 }
 

@@ -104,5 +104,6 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     save(output, &encode(&surrogate, format)?)?;
     let elapsed = start.elapsed().as_secs_f64();
     context.print(&CertifyReport::new(&surrogate, output.display().to_string(), elapsed))?;
+    context.hint_at("report", output, "to put it on a page");
     Ok(Ending::Done)
 }

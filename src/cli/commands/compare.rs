@@ -3,7 +3,8 @@
 use crate::cli::inputs::read_surrogate;
 use crate::cli::shared_options::{Failures, RecordingOptions, percentage, sample_count, seed};
 use crate::cli::study_of::{StudyFile, runs_or_default};
-use crate::cli::{Context, Ending, complain, about};
+use crate::cli::messages::complain;
+use crate::cli::{Context, Ending, about};
 use crate::report::{CompareReport, significant};
 use clap::Args;
 use pcc_compile::campaign::Campaign;

@@ -1,7 +1,8 @@
 //! `pcc completions`
 
 use crate::cli::arguments::commands;
-use crate::cli::{Context, Ending, print};
+use crate::cli::messages::print;
+use crate::cli::{Context, Ending};
 use clap::Args;
 use clap_complete::Shell;
 

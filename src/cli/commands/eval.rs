@@ -113,7 +113,11 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         return Ok(Ending::Done);
     }
     let found = session.run(&context.terminal).map_err(|error| about(name, error))?;
-    present(context, &found, &options.pictures)
+    let ending = present(context, &found, &options.pictures)?;
+    if surrogate.certificates.is_empty() && ending == Ending::Done {
+        context.hint_at("certify", &options.surrogate, "to bound the true share by fresh model runs");
+    }
+    Ok(ending)
 }
 
 fn request(options: &Options) -> Request {

@@ -1,7 +1,8 @@
 //! `pcc inspect`
 
 use crate::cli::inputs::read_surrogate;
-use crate::cli::{Context, Ending, complain};
+use crate::cli::messages::complain;
+use crate::cli::{Context, Ending};
 use crate::report::InspectReport;
 use clap::Args;
 use std::path::PathBuf;

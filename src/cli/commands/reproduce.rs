@@ -2,7 +2,8 @@
 
 use crate::cli::overwrite::{Output, PICTURE, REPRODUCTION_PAGE, claim};
 use crate::cli::shared_options::{run_count, seed};
-use crate::cli::{Context, Ending, complain, about};
+use crate::cli::messages::complain;
+use crate::cli::{Context, Ending, about};
 use crate::report::{figure_sheets, short_table_2};
 use crate::reproduce::{Options as Parts, Reproduction, Row};
 use anyhow::Context as _;

@@ -1,5 +1,6 @@
 //! `pcc run`: the main job end to end.
 
+use crate::cli::hints::quoted;
 use crate::cli::inputs::read_study;
 use crate::cli::overwrite::{Output, refuse_to_replace};
 use crate::cli::shared_options::{RecordingOptions, seed};
@@ -144,12 +145,6 @@ fn build_and_compare(
         .with_context(|| format!("after the surrogate was written to {}", path.display()))?;
     let compare = CompareReport::new(&study.name, &built.surrogate, &comparison, seed, start.elapsed().as_secs_f64());
     Ok((built.surrogate, build, compare))
-}
-
-/// A file name as a shell takes it.
-fn quoted(name: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "/._-+".contains(c);
-    if name.chars().all(is_plain) { name.to_owned() } else { format!("'{}'", name.replace('\'', r"'\''")) }
 }
 
 /// Everything a run found.
