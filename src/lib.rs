@@ -63,5 +63,5 @@ pub use pcc_evaluate::session::{Evaluation, HistogramRequest, Request, Session};
 pub use pcc_evaluate::surrogate::{Certificate, Surrogate};
 
 #[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct ReadmeExamples;
+#[doc = include_str!("../docs/how-to/rust.md")]
+struct DocumentExamples;
