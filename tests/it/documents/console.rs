@@ -125,7 +125,7 @@ fn copy_surrogates(from: &Path, to: &Path) {
         let to = to.join(entry.file_name());
         if entry.path().is_dir() {
             copy_surrogates(&entry.path(), &to);
-        } else if !to.extension().is_some_and(|extension| extension == "json") {
+        } else if to.extension().is_none_or(|extension| extension != "json") {
             fs::copy(entry.path(), to).unwrap();
         }
     }

@@ -2,6 +2,7 @@
 
 mod console;
 mod form;
+mod json;
 mod links;
 mod pages;
 mod studies;

@@ -1,0 +1,86 @@
+//! The fields of JSON that the reference lists are there.
+
+use super::pages::Page;
+use crate::support::repository;
+use assert_cmd::Command;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Words in code on the page that are no fields.
+const NO_FIELDS: [&str; 5] = ["false", "true", "null", "reference", "certify"];
+
+/// They are there only where model runs failed.
+const ONLY_AFTER_FAILURES: [&str; 2] = ["unanswered_proportion", "bounds"];
+
+/// Headings of the page, each with commands whose documents together have its fields.
+const COMMANDS: [(&str, &[&str]); 6] = [
+    ("build", &["build surrogates/clutch-r3.toml -o clutch.pcc"]),
+    (
+        "eval and reference",
+        &[
+            "eval clutch.pcc -n 1e4 --critical mu --events flutter --quantiles --histogram",
+            "eval clutch.pcc -n 1e4 --sweep mu=0:0.5:2",
+        ],
+    ),
+    ("compare", &["compare clutch.pcc --study surrogates/clutch-r3.toml -n 1e3"]),
+    ("certify", &["certify clutch.pcc --study surrogates/clutch-r3.toml -m 100"]),
+    ("inspect", &["inspect clutch.pcc"]),
+    ("design", &["design table.toml --emit rows.csv"]),
+];
+
+/// `design` is for models that something else runs.
+const TABLE: &str = r#"
+format = 1
+name = "table"
+[model]
+kind = "table"
+eigenvalues = 2
+[inputs]
+speed = { distribution = "uniform", lower = 1.0, upper = 12.0 }
+"#;
+
+fn collect(value: &Value, fields: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(entries) => {
+            for (name, value) in entries {
+                fields.insert(name.clone());
+                collect(value, fields);
+            }
+        }
+        Value::Array(values) => values.iter().for_each(|value| collect(value, fields)),
+        _ => {}
+    }
+}
+
+fn fields(command: &str, folder: &Path) -> BTreeSet<String> {
+    let output = Command::cargo_bin("pcc").unwrap().current_dir(folder).args(command.split(' ')).arg("--json").output();
+    let output = output.unwrap();
+    let value = serde_json::from_slice(&output.stdout);
+    let value = value.unwrap_or_else(|error| panic!("{command}: {error}: {}", String::from_utf8_lossy(&output.stderr)));
+    let mut fields = BTreeSet::new();
+    collect(&value, &mut fields);
+    fields
+}
+
+#[test]
+fn listed_fields_are_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("surrogates")).unwrap();
+    let study = "surrogates/clutch-r3.toml";
+    std::fs::copy(repository(study), folder.path().join(study)).unwrap();
+    std::fs::write(folder.path().join("table.toml"), TABLE).unwrap();
+    let page = Page::read("docs/reference/json.md").lines.join("\n");
+    for (title, commands) in COMMANDS {
+        let section = page.split("\n## ").find(|section| section.lines().next() == Some(title)).unwrap();
+        // Names in code; a pipe or a space makes it something else.
+        let is_name =
+            |name: &&str| !name.is_empty() && name.chars().all(|c| c.is_ascii_lowercase() || "_0123456789".contains(c));
+        let listed: BTreeSet<&str> = section.split('`').skip(1).step_by(2).filter(is_name).collect();
+        assert!(!listed.is_empty(), "{title}");
+        let found: BTreeSet<String> = commands.iter().flat_map(|command| fields(command, folder.path())).collect();
+        for name in listed.into_iter().filter(|name| !NO_FIELDS.contains(name)) {
+            assert!(found.contains(name) || ONLY_AFTER_FAILURES.contains(&name), "{title}: no field {name} is printed");
+        }
+    }
+}
