@@ -1,9 +1,10 @@
 //! Sessions are real: every block ```` ```console ```` is run, and what it shows is what is printed.
 //!
-//! A block has one or more lines `$ pcc …`, each followed by what it prints; where a command fails, its message as
-//! well. The blocks of a page are run in order in one temporary folder, which has the `surrogates/` of the repository
-//! and the files that the page shows: `<!-- file: NAME -->` above a block saves it, `<!-- append: NAME -->` adds it to
-//! the end of the file. With `PCC_UPDATE_DOCUMENTS=1` the pages are given what is printed now.
+//! A block has one or more lines `$ pcc …`, each followed by what it prints. Below `<!-- fails -->` its commands fail,
+//! and their messages are shown as well. The blocks of a page are run in order in one temporary folder, which has the
+//! `surrogates/` of the repository and the files that the page shows: `<!-- file: NAME -->` above a block saves it,
+//! `<!-- append: NAME -->` adds it to the end of the file. With `PCC_UPDATE_DOCUMENTS=1` the pages are given what is
+//! printed now.
 
 use super::pages::{self, Page};
 use crate::support::repository;
@@ -149,10 +150,12 @@ fn run(page: &Page, updates: bool) -> (Vec<String>, Vec<String>) {
         }
         lines.extend_from_slice(&page.lines[copied..block.lines.start]);
         copied = block.lines.end;
+        let should_fail = block.comments.iter().any(|comment| comment == "fails");
         for (command, shown) in sessions(page, &block.text) {
             let (found, fails) = printed(&command, folder.path());
-            if fails && !shown.contains("pcc: ") {
-                wrong.push(format!("{}: {command} fails:\n{found}", page.path));
+            if fails != should_fail {
+                let what = if fails { "fails" } else { "does not fail, as the page says" };
+                wrong.push(format!("{}: {command} {what}:\n{found}", page.path));
             } else if !updates && let Some(difference) = difference(&found, &shown) {
                 wrong.push(format!("{}: {command} {difference}", page.path));
             }
