@@ -68,10 +68,13 @@ fn printed(command: &str, folder: &Path) -> (String, bool) {
 
 /// Whether a part of a line says how long something took: `0.03 s (37 000 000 per second)`.
 fn is_time(part: &str) -> bool {
-    part.match_indices(" s").any(|(at, _)| {
-        let (before, after) = (part[..at].chars().last(), part[at + 2..].chars().next());
-        before.is_some_and(|c| c.is_ascii_digit()) && !after.is_some_and(char::is_alphabetic)
-    })
+    let has = |unit: &str| {
+        part.match_indices(unit).any(|(at, _)| {
+            let (before, after) = (part[..at].chars().last(), part[at + unit.len()..].chars().next());
+            before.is_some_and(|c| c.is_ascii_digit()) && !after.is_some_and(char::is_alphabetic)
+        })
+    };
+    part.contains(" per second") || [" ms", " s", " min"].into_iter().any(has)
 }
 
 /// Without what changes from run to run.
