@@ -39,8 +39,9 @@ pub(super) fn density_chart(title: &str, samples: &[(&str, Color, &[f64])]) -> C
     });
     Chart {
         title: title.to_owned(),
-        description: "How often the spectral abscissa takes which value: everything right of zero is unstable."
-            .to_owned(),
+        description:
+            "How often the spectral abscissa takes which value: without a margin, what lies right of zero is unstable."
+                .to_owned(),
         x: Axis::linear("max Re λ in 1/s"),
         y: Axis::logarithmic("probability density in s"),
         series: series.collect(),

@@ -28,24 +28,33 @@ fn title_of_conditions(report: &SweepReport) -> String {
 /// Points of a curve up to which each is marked.
 const MARKED: usize = 51;
 
+/// Where less than this is unstable everywhere, that is what is drawn: beside 100 % it would not be seen.
+const RARE: f64 = 0.01;
+
 fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
+    let is_rare = !report.has_marginal() && report.points.iter().all(|point| point.stable_proportion > 1.0 - RARE);
+    let percent = |stable: f64| short(100.0 * if is_rare { 1.0 - stable } else { stable });
+    let named = if is_rare { "unstable" } else { "stable" };
     let points = |part: fn(&SweepPoint) -> f64| -> Vec<[f64; 2]> {
         report.points.iter().map(|point| [short(point.values[0]), short(100.0 * part(point))]).collect()
     };
     let line = |part: fn(&SweepPoint) -> f64| Marks::Line(points(part));
+    let shares = |part: fn(&SweepPoint) -> f64| -> Vec<[f64; 2]> {
+        report.points.iter().map(|point| [short(point.values[0]), percent(part(point))]).collect()
+    };
     let band = |end: fn(Interval) -> f64| {
         let ends = report
             .points
             .iter()
-            .filter_map(|point| Some([short(point.values[0]), short(100.0 * end(point.surrogate_band?))]));
+            .filter_map(|point| Some([short(point.values[0]), percent(end(point.surrogate_band?))]));
         Marks::Line(ends.collect())
     };
     let mut series = vec![
         Series::new("surrogate band", Color::Orange, band(|band| band.lower)),
         Series::new("surrogate band", Color::Orange, band(|band| band.upper)),
-        Series::new("95 % interval", Color::Gray, line(|point| point.interval.lower)),
-        Series::new("95 % interval", Color::Gray, line(|point| point.interval.upper)),
-        Series::new("stable", Color::Blue, line(|point| point.stable_proportion)),
+        Series::new("95 % interval", Color::Gray, Marks::Line(shares(|point| point.interval.lower))),
+        Series::new("95 % interval", Color::Gray, Marks::Line(shares(|point| point.interval.upper))),
+        Series::new(named, Color::Blue, Marks::Line(shares(|point| point.stable_proportion))),
     ];
     if report.has_marginal() {
         series.push(Series::new("marginal", Color::Purple, line(|point| point.marginal_proportion)));
@@ -55,17 +64,14 @@ fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
         series.push(Series::new("divergence", Color::Green, line(|point| point.divergence_proportion)));
     }
     if report.points.len() <= MARKED {
-        let marks = Marks::Symbols(points(|point| point.stable_proportion), Symbol::Circle);
-        series.push(Series::new("stable", Color::Blue, marks));
+        let marks = Marks::Symbols(shares(|point| point.stable_proportion), Symbol::Circle);
+        series.push(Series::new(named, Color::Blue, marks));
     }
     Chart {
         title: format!("{}: stability over {}{}", report.study, sweep.input, title_of_conditions(report)),
-        description: format!(
-            "Share of stable samples at {} values of {}, with its interval.",
-            sweep.points, sweep.input
-        ),
+        description: report.verdict.clone(),
         x: Axis::linear(sweep.input.clone()),
-        y: Axis::linear("stable, %").between(0.0, 100.0),
+        y: if is_rare { Axis::linear("unstable, %") } else { Axis::linear("stable, %").between(0.0, 100.0) },
         series,
         guides: Vec::new(),
     }
@@ -86,10 +92,7 @@ fn map(report: &SweepReport, vertical: &Sweep, horizontal: &Sweep) -> Chart {
             horizontal.input,
             title_of_conditions(report)
         ),
-        description: format!(
-            "Share of stable samples at {} values of {} and {} of {}.",
-            vertical.points, vertical.input, horizontal.points, horizontal.input
-        ),
+        description: report.verdict.clone(),
         x: Axis::linear(horizontal.input.clone()).between(horizontal.from, horizontal.to),
         y: Axis::linear(vertical.input.clone()).between(vertical.from, vertical.to),
         series: vec![Series::new("stable", Color::Blue, Marks::Cells(cells))],
