@@ -92,10 +92,16 @@ impl CertifyReport {
 impl CertifyReport {
     fn verdict(&self) -> String {
         let Some(CertificateReport { certificate: new, .. }) = self.certificates.last() else { return String::new() };
+        let shares = match new.marginal {
+            None => format!("{} are stable", share_range(new.lower, new.upper)),
+            Some(MarginalBounds { marginal, unstable, .. }) => {
+                let [marginal, unstable] = [marginal, unstable].map(|[lower, upper]| share_range(lower, upper));
+                format!("{} are stable, {marginal} marginal, {unstable} unstable", share_range(new.lower, new.upper))
+            }
+        };
         format!(
-            "{}: {} are stable, whatever the surrogate is worth ({}, from {} fresh model runs).",
+            "{}: {shares}, whatever the surrogate is worth ({}, from {} fresh model runs).",
             self.study,
-            share_range(new.lower, new.upper),
             level(new.level),
             count(new.samples)
         )
@@ -103,10 +109,6 @@ impl CertifyReport {
 
     fn facts(&self, new: &Certificate, same_problem: bool) -> Facts {
         let mut facts = Facts::default();
-        if let Some(MarginalBounds { marginal, unstable, .. }) = new.marginal {
-            facts.add("marginal", share_range(marginal[0], marginal[1]), "");
-            facts.add("unstable", share_range(unstable[0], unstable[1]), "");
-        }
         if !same_problem {
             facts.add("of another problem", "than the surrogate was built for: eval does not show this bound", "");
         }

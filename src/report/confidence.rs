@@ -37,6 +37,17 @@ pub struct Basis {
     pub of_modes_left_out: bool,
 }
 
+/// The share that is named, and so are its intervals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Named {
+    /// Of stable samples.
+    Stable,
+    /// Of unstable ones, all others being stable.
+    Unstable,
+    /// Of unstable ones beside marginal ones, with its interval.
+    BesideMarginal(Interval),
+}
+
 /// A bound from fresh model runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VerifiedBound {
@@ -49,6 +60,9 @@ pub struct VerifiedBound {
     pub seed: u64,
     /// How many certificates the file has: choosing among many would void the level.
     pub certificates: usize,
+    /// The bound of unstable samples, where some are marginal.
+    #[serde(skip)]
+    pub unstable: Option<[f64; 2]>,
 }
 
 impl Confidence {
@@ -114,8 +128,8 @@ pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
 /// What an estimated error is a share of, and where it is from.
 pub(super) fn error_words(of_modes_left_out: bool) -> &'static str {
     match of_modes_left_out {
-        true => "of the stable share, by modes left out alone",
-        false => "of the stable share, by points left out",
+        true => "of the stable share, by left-out modes",
+        false => "of the stable share, by left-out points",
     }
 }
 
@@ -124,53 +138,64 @@ fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
     let valid: Vec<&Certificate> = surrogate.certificates.iter().filter(own).collect();
     let most = valid.iter().map(|certificate| certificate.samples).max()?;
     let chosen = valid.iter().find(|certificate| certificate.samples == most)?;
-    let Certificate { lower, upper, level, samples, seed, .. } = **chosen;
-    Some(VerifiedBound { bound: Interval { lower, upper, level }, samples, seed, certificates: valid.len() })
+    let Certificate { lower, upper, level, samples, seed, marginal, .. } = **chosen;
+    let unstable = marginal.map(|bounds| bounds.unstable);
+    Some(VerifiedBound { bound: Interval { lower, upper, level }, samples, seed, certificates: valid.len(), unstable })
 }
 
 impl Confidence {
-    /// What leaves how much open: names, values and words. If it is the unstable share that is named, so are its
-    /// intervals.
-    pub(super) fn facts(&self, of_unstable: bool) -> Vec<(&'static str, String, String)> {
-        let range = |interval: &Interval| match of_unstable {
-            true => share_range(1.0 - interval.upper, 1.0 - interval.lower),
-            false => share_range(interval.lower, interval.upper),
+    /// What leaves how much open: names, values and words.
+    pub(super) fn facts(&self, named: Named) -> Vec<(&'static str, String, String)> {
+        let range = |interval: &Interval| match named {
+            Named::Unstable => share_range(1.0 - interval.upper, 1.0 - interval.lower),
+            _ => share_range(interval.lower, interval.upper),
         };
         let Self { interval, surrogate_band, estimated_error_percent, verified_bound, basis } = self;
         let by = match basis.replicates {
             0 | 1 => format!("{} samples", count(basis.samples)),
             replicates => format!("{replicates} replicates"),
         };
+        let interval = if let Named::BesideMarginal(unstable) = &named { unstable } else { interval };
         let mut facts =
             vec![("sampling interval", range(interval), format!("left open by {by}, {}", level(interval.level)))];
         let place = if basis.is_confined { ", in all of the domain" } else { "" };
-        facts.push(match surrogate_band {
+        // Where rounding decides, a shift of max Re λ says nothing.
+        let is_marginal = matches!(named, Named::BesideMarginal(_));
+        facts.extend((!is_marginal).then(|| match surrogate_band {
             Some(band) => {
                 let words = format!("left open by the fit, {} of points{place}", level(band.level));
                 ("surrogate band", range(band), words)
             }
             None => ("surrogate band", "unknown".to_owned(), "no point could be left out".to_owned()),
-        });
+        }));
         if let Some(error) = estimated_error_percent {
-            let words = error_words(basis.of_modes_left_out).to_owned();
+            let words = match is_marginal {
+                true => "of the share that is not unstable".to_owned(),
+                false => error_words(basis.of_modes_left_out).to_owned(),
+            };
             facts.push(("estimated error", format!("{} %", significant(*error, 2)), words));
         }
         facts.push(match verified_bound {
             None if basis.is_confined => ("verified bound", "none for a part of the domain".to_owned(), String::new()),
             None => ("verified bound", "none yet".to_owned(), "pcc certify makes one from fresh runs".to_owned()),
-            Some(VerifiedBound { bound, samples, seed, certificates }) => {
+            Some(VerifiedBound { bound, samples, seed, certificates, unstable }) => {
                 let others =
                     if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
                 let words =
                     format!("{}, {} fresh model runs, seed {seed}{others}", level(bound.level), count(*samples));
-                ("verified bound", range(bound), words)
+                let bound = match (is_marginal, unstable) {
+                    (true, &Some([lower, upper])) => share_range(lower, upper),
+                    (true, None) => format!("{} stable", range(bound)),
+                    _ => range(bound),
+                };
+                ("verified bound", bound, words)
             }
         });
         facts
     }
 
     /// The interval alone: what is known of direct computations.
-    pub(super) fn sampling(&self, of_unstable: bool) -> (&'static str, String, String) {
-        self.facts(of_unstable).swap_remove(0)
+    pub(super) fn sampling(&self, named: Named) -> (&'static str, String, String) {
+        self.facts(named).swap_remove(0)
     }
 }

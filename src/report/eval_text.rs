@@ -1,6 +1,7 @@
 //! The answer of `eval` and `reference` as people read it: a sentence, how sure it is, modes that can be unstable, and
 //! causes. What stands behind it is in `eval_details.rs`.
 
+use super::confidence::Named;
 use super::eval::{EvalReport, ModeReport, RealReport, Statistics};
 use super::judgement::modes_text;
 use super::layout::{Facts, width, wrapped, write_verdict, write_warnings};
@@ -47,18 +48,19 @@ impl EvalReport {
         let mut facts = Facts::default();
         self.add_circumstances(&mut facts);
         let judged_by = || format!("judged by {}", self.judged_by);
-        let of_unstable = self.names_unstable();
+        let has_marginal = self.marginal_proportion > 0.0 || self.undamped;
+        let named = match has_marginal {
+            true => Named::BesideMarginal(self.intervals.unstable),
+            false if self.names_unstable() => Named::Unstable,
+            false => Named::Stable,
+        };
         let kinds =
             || format!("flutter {}, divergence {}", share(self.flutter_proportion), share(self.divergence_proportion));
         let mut stated = vec![("stable", self.stable_proportion, judged_by())];
-        if self.marginal_proportion > 0.0 || self.undamped {
-            stated.push((
-                "marginal",
-                self.marginal_proportion,
-                "neither grows nor decays, as far as can be told".to_owned(),
-            ));
+        if has_marginal {
+            stated.push(("marginal", self.marginal_proportion, "neither grows nor decays".to_owned()));
             stated.push(("unstable", self.unstable_proportion, kinds()));
-        } else if of_unstable {
+        } else if named == Named::Unstable {
             let kinds = if self.can_diverge() { kinds() + "; " } else { String::new() };
             stated = vec![("unstable", self.unstable_proportion, kinds + &judged_by())];
         } else if self.can_diverge() {
@@ -76,14 +78,10 @@ impl EvalReport {
             facts.add("frequencies", band.clone(), "");
         }
         let sure = match self.source {
-            "model" => vec![self.confidence.sampling(of_unstable)],
-            _ => self.confidence.facts(of_unstable),
+            "model" => vec![self.confidence.sampling(named)],
+            _ => self.confidence.facts(named),
         };
         sure.into_iter().for_each(|(name, value, words)| facts.add(name, value, words));
-        if self.marginal_proportion > 0.0 {
-            let unstable = &self.intervals.unstable;
-            facts.add("unstable interval", interval(unstable), super::numbers::level(unstable.level));
-        }
         add_events(&mut facts, &self.events);
         facts
     }
