@@ -70,9 +70,8 @@ mod tests {
     #[test]
     fn files_and_folders_are_completed() {
         for command in commands().get_subcommands().filter(|command| command.get_name() != "completions") {
-            for argument in command.get_arguments().filter(|argument| argument.get_value_hint() == ValueHint::AnyPath) {
-                panic!("{}: {} is a file or a folder", command.get_name(), argument.get_id());
-            }
+            let unclear = command.get_arguments().find(|argument| argument.get_value_hint() == ValueHint::AnyPath);
+            assert!(unclear.is_none(), "{}: {unclear:?} is a file or a folder", command.get_name());
         }
         let hint = |command: &str, argument: &str| {
             let commands = commands();

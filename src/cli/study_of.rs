@@ -25,7 +25,7 @@ pub(super) enum SearchError {
     #[error("{surrogate}: its study is needed; {looked_for} was looked for and is not there; say --study FILE")]
     NotThere { surrogate: String, looked_for: String },
     #[error("{surrogate}: its study is needed; {looked_for} was looked for and not taken; say --study FILE: {cause}")]
-    Unreadable { surrogate: String, looked_for: String, cause: StudyFileError },
+    Unreadable { surrogate: String, looked_for: String, cause: Box<StudyFileError> },
     #[error(
         "{surrogate}: its study is needed; {looked_for} was looked for and not taken, because its model, constants, \
          inputs or spectrum are others; say --study FILE"
@@ -58,7 +58,7 @@ fn study_beside(file: &Path, surrogate: &Surrogate) -> Result<StudyFile, SearchE
         return Err(SearchError::NotThere { surrogate: shown, looked_for });
     }
     match Study::read(&path) {
-        Err(cause) => Err(SearchError::Unreadable { surrogate: shown, looked_for, cause }),
+        Err(cause) => Err(SearchError::Unreadable { surrogate: shown, looked_for, cause: Box::new(cause) }),
         Ok(study) if study.problem_hash() != surrogate.provenance.problem_hash => {
             Err(SearchError::OtherProblem { surrogate: shown, looked_for })
         }
