@@ -13,9 +13,14 @@ mod old_spellings;
 mod overwrite;
 mod points;
 mod question_options;
+#[cfg(feature = "schema")]
+mod schemas;
 mod shared_options;
 mod study_of;
 mod terminal;
+
+#[cfg(feature = "schema")]
+pub use schemas::schemas;
 
 use crate::error::{FAILED, INTERRUPTED};
 use arguments::Arguments;

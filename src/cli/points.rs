@@ -50,6 +50,7 @@ impl From<csv::Error> for PointsError {
 
 /// What `eval` and `reference` say after writing points.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(super) struct PointsReport {
     pub points: u64,
     pub stable_points: u64,

@@ -18,6 +18,7 @@ const MANY_LEVELS: usize = 6;
 
 /// The result of a build.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BuildReport {
     /// The answer in a sentence.
     pub verdict: String,
@@ -58,6 +59,7 @@ pub struct BuildReport {
 
 /// Where the runs of a build come from.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RecordedRuns {
     /// The journal they are recorded in.
     pub journal: Option<String>,
@@ -71,6 +73,7 @@ pub struct RecordedRuns {
 
 /// A run that failed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FailedRun {
     /// The inputs with their values.
     pub point: String,

@@ -7,6 +7,7 @@ use std::fmt;
 
 /// What a build waits for.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DesignReport {
     /// Name of the study.
     pub study: String,
@@ -42,6 +43,7 @@ impl fmt::Display for DesignReport {
 
 /// What a table of results brought.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct IngestReport {
     /// Name of the study.
     pub study: String,
@@ -86,6 +88,7 @@ impl fmt::Display for IngestReport {
 
 /// Runs of one model.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JournalModel {
     /// Hash of the model.
     pub hash: String,
@@ -101,6 +104,7 @@ pub struct JournalModel {
 
 /// What is in a journal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct JournalReport {
     /// The file.
     pub journal: String,

@@ -10,6 +10,7 @@ use std::fmt;
 
 /// A certificate of a surrogate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CertificateReport {
     /// What it says.
     #[serde(flatten)]
@@ -49,6 +50,7 @@ impl fmt::Display for CertificateReport {
 
 /// What `certify` found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CertifyReport {
     /// The answer in a sentence.
     pub verdict: String,

@@ -18,6 +18,7 @@ const SEVERAL: f64 = 3.0;
 
 /// Surrogate and model on the same points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CompareReport {
     /// The answer in a sentence.
     pub verdict: String,
@@ -69,6 +70,7 @@ pub struct CompareReport {
 
 /// Errors of one component.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComponentErrors {
     /// Name.
     pub name: String,

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 /// Answers to "how sure?", each about something else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Confidence {
     /// Wilson interval of the share: what the finite number of samples leaves open.
     pub interval: Interval,
@@ -50,6 +51,7 @@ pub(super) enum Named {
 
 /// A bound from fresh model runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VerifiedBound {
     /// The bound.
     #[serde(flatten)]

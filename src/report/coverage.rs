@@ -14,6 +14,7 @@ const FEWEST_NAMED: usize = 4;
 
 /// Between what shares lie, whatever the model would have answered where it did not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Bounds {
     /// Of stable samples.
     pub stable: Interval,

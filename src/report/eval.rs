@@ -18,6 +18,7 @@ use std::f64::consts::TAU;
 
 /// Statistics over samples, from a surrogate or from the model itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EvalReport {
     /// The answer in a sentence.
     pub verdict: String,
@@ -116,6 +117,7 @@ pub struct OnlyInText {
 
 /// Moments and range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Statistics {
     /// Mean.
     pub mean: f64,
@@ -129,6 +131,7 @@ pub struct Statistics {
 
 /// Intervals of shares.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Intervals {
     /// Of stable samples.
     pub stable: Interval,
@@ -144,6 +147,7 @@ pub struct Intervals {
 
 /// One mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ModeReport {
     /// Its number, from 1.
     pub mode: usize,
@@ -169,6 +173,7 @@ pub struct ModeReport {
 
 /// A real eigenvalue that belongs to no mode.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RealReport {
     /// Its name.
     pub name: String,
@@ -180,6 +185,7 @@ pub struct RealReport {
 
 /// One component.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComponentReport {
     /// Name.
     pub name: String,
@@ -193,6 +199,7 @@ pub struct ComponentReport {
 
 /// What follows from the coefficients without sampling.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Analysis {
     /// Mean from the coefficients.
     pub mean_from_coefficients: f64,
@@ -204,6 +211,7 @@ pub struct Analysis {
 
 /// Sobol' indices of one input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SobolReport {
     /// Name of the input.
     pub input: String,
@@ -215,6 +223,7 @@ pub struct SobolReport {
 
 /// A quantile of residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct QuantileReport {
     /// Probability to be undercut.
     pub level: f64,

@@ -10,6 +10,7 @@ const ALMOST_ONE: f64 = 1.0 - 5e-6;
 
 /// Fit of one component.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FitReport {
     /// Name.
     pub name: String,

@@ -19,6 +19,7 @@ use std::fmt;
 
 /// The content of a surrogate file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InspectReport {
     /// What it is in a sentence.
     pub verdict: String,
@@ -99,6 +100,7 @@ pub struct InspectReport {
 
 /// One input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InputReport {
     /// Name.
     pub name: String,
@@ -114,6 +116,7 @@ pub struct InputReport {
 
 /// Cost of one evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PlanReport {
     /// Terms after merging all components.
     pub terms: usize,

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 /// The margin that eigenvalues are judged with: one of the two.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum MarginReport {
     /// In 1/s.

@@ -6,6 +6,7 @@ use std::fmt;
 
 /// A shard that was evaluated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PartReport {
     /// Where what was found is kept.
     pub file: String,
@@ -38,6 +39,7 @@ impl fmt::Display for PartReport {
 
 /// Parts that were put together to a larger one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MergeReport {
     /// Where it is kept.
     pub file: String,

@@ -12,6 +12,7 @@ use std::fmt;
 
 /// Sobol' indices of max Re λ and of the stability indicator.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SensitivityReport {
     /// Samples of the pick-freeze estimate.
     pub samples: u64,
@@ -23,6 +24,7 @@ pub struct SensitivityReport {
 
 /// Indices of one input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InputSensitivity {
     /// Name.
     pub input: String,
@@ -34,6 +36,7 @@ pub struct InputSensitivity {
 
 /// First-order and total index.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct IndexPair {
     /// First order.
     pub first: Bounded,
@@ -43,6 +46,7 @@ pub struct IndexPair {
 
 /// A value with its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Bounded {
     /// Estimate.
     pub value: f64,
@@ -135,6 +139,7 @@ impl fmt::Display for SensitivityReport {
 
 /// The distribution of the critical value of one input.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CriticalReport {
     /// Name of the input.
     pub input: String,
@@ -158,6 +163,7 @@ pub struct CriticalReport {
 
 /// A change of stability along an input, of the samples in which the same mode decides it in the same way.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CrossingReport {
     /// Number of the change, from 1, from the lower bound of the input upwards.
     pub order: u32,
@@ -232,6 +238,7 @@ fn crossings_table(crossings: &[CrossingReport]) -> Option<Table> {
 
 /// One quantile of the critical value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CriticalQuantile {
     /// Share of all samples that lose stability at this value or below.
     pub level: f64,

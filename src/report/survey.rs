@@ -20,6 +20,7 @@ const BEFORE_BAR: usize = 40;
 
 /// Samples in which a quantity is below or above a value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EventReport {
     /// As asked: `max_re<-1.0`.
     pub event: String,
@@ -33,6 +34,7 @@ pub struct EventReport {
 
 /// Samples in equal bins.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistogramReport {
     /// Name of the quantity.
     pub quantity: String,
@@ -50,6 +52,7 @@ pub struct HistogramReport {
 
 /// Quantiles of one quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct QuantilesReport {
     /// Name of the quantity.
     pub quantity: String,
@@ -61,6 +64,7 @@ pub struct QuantilesReport {
 
 /// One quantile.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LevelReport {
     /// Probability not to be exceeded.
     pub level: f64,

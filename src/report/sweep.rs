@@ -11,6 +11,7 @@ use serde::Serialize;
 
 /// The answer of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweepReport {
     /// The answer in a sentence.
     pub verdict: String,
@@ -59,6 +60,7 @@ pub struct SweepReport {
 
 /// One point of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SweepPoint {
     /// Values of the swept inputs, in physical units.
     pub values: Vec<f64>,

@@ -77,6 +77,7 @@ pub struct Options {
 
 /// One build, compared with the model: a row of `table2.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Row {
     /// Number of uncertain parameters.
     pub r: usize,

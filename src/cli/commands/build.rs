@@ -93,7 +93,8 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
 
 /// A study with its defaults.
 #[derive(Debug, Serialize)]
-struct ShownStudy {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct ShownStudy {
     study: String,
 }
 

@@ -39,7 +39,8 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
 }
 
 #[derive(Debug, Serialize)]
-struct Converted {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Converted {
     file: String,
     bytes: u64,
 }

@@ -64,7 +64,8 @@ fn page(command: Command) -> anyhow::Result<Vec<u8>> {
 
 /// Where the pages are.
 #[derive(Debug, Serialize)]
-struct Written {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Written {
     files: Vec<String>,
 }
 

@@ -6,7 +6,7 @@ use clap::Subcommand;
 /// One line per command, in the order of the help: its name, its file, its options and its work.
 macro_rules! commands {
     ($($name:ident: $file:ident),+ $(,)?) => {
-        $(mod $file;)+
+        $(pub(super) mod $file;)+
 
         #[derive(Debug, Subcommand)]
         pub(super) enum Command {

@@ -125,7 +125,8 @@ fn at_random_points(surrogate: &Surrogate, seed: u64) -> (Vec<Vec<f64>>, Block) 
 
 /// Where the page is.
 #[derive(Debug, Serialize)]
-struct Written {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Written {
     file: String,
     bytes: usize,
     stable_proportion: f64,

@@ -147,7 +147,8 @@ fn save_rows(path: &Path, work: &Reproduction) -> anyhow::Result<()> {
 
 /// What was found and where it is.
 #[derive(Debug, Serialize)]
-struct Reproduced {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Reproduced {
     rows: Vec<Row>,
     files: Vec<String>,
     elapsed_seconds: f64,

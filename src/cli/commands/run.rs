@@ -149,7 +149,8 @@ fn build_and_compare(
 
 /// Everything a run found.
 #[derive(Debug, Serialize)]
-struct RunReport {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct RunReport {
     build: BuildReport,
     eval: EvalReport,
     compare: CompareReport,
@@ -159,7 +160,8 @@ struct RunReport {
 
 /// What a method costs and how good it is.
 #[derive(Debug, Serialize)]
-struct MethodRow {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct MethodRow {
     method: &'static str,
     file: String,
     direct_computations: u64,

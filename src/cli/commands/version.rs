@@ -40,7 +40,8 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
 
 /// The program, and the machine that it runs on.
 #[derive(Debug, Serialize)]
-struct Version {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Version {
     version: &'static str,
     #[serde(flatten)]
     machine: Option<Machine>,
@@ -48,7 +49,8 @@ struct Version {
 
 /// What may matter where something goes wrong.
 #[derive(Debug, Serialize)]
-struct Machine {
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Machine {
     /// Vector instructions that this processor has, and those that are used.
     instruction_sets: Vec<&'static str>,
     instruction_set: &'static str,

@@ -1,11 +1,11 @@
 //! Rebuilds what is shipped: `schemas/` and, beside every study in `surrogates/`, its `.pcc` and `.json`.
 //!
-//! `cargo run --release -p pcc-tools --bin shipped_surrogates` writes them; with `-- --check` it compares instead, and
-//! fails if the schema differs, if a surrogate has other index sets or coefficients beyond the tolerance between
-//! machines, or if the two forms of a surrogate differ.
+//! `cargo run --release -p pcc-tools --bin shipped_surrogates` writes them, with `-- --schemas` the schemas alone; with
+//! `-- --check` it compares instead, and fails if a schema differs, if a surrogate has other index sets or coefficients
+//! beyond the tolerance between machines, or if the two forms of a surrogate differ.
 
 use pcc_compile::study::Study;
-use pcc_evaluate::artifact::{Format, decode, encode, read, schema};
+use pcc_evaluate::artifact::{Format, decode, encode, read};
 use pcc_evaluate::foundation::{Silent, save};
 use std::error::Error;
 use std::fs;
@@ -14,13 +14,18 @@ use std::path::{Path, PathBuf};
 fn main() -> Result<(), Box<dyn Error>> {
     let check = std::env::args().any(|argument| argument == "--check");
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
-    let schema_path = root.join("schemas/surrogate.v1.schema.json");
-    if !check {
-        save(&schema_path, schema().as_bytes())?;
-    } else if fs::read_to_string(&schema_path)? != schema() {
-        return Err(format!("{} is not up to date", schema_path.display()).into());
+    for (name, text) in pcc_tools::schemas() {
+        let path = root.join("schemas").join(name);
+        if !check {
+            save(&path, text.as_bytes())?;
+        } else if fs::read_to_string(&path)? != text {
+            return Err(format!("{} is not up to date", path.display()).into());
+        }
+        println!("{}", path.display());
     }
-    println!("{}", schema_path.display());
+    if std::env::args().any(|argument| argument == "--schemas") {
+        return Ok(());
+    }
 
     let mut studies: Vec<PathBuf> = fs::read_dir(root.join("surrogates"))?
         .map(|entry| entry.map(|entry| entry.path()))

@@ -8,12 +8,16 @@ mod identity;
 mod model;
 mod print;
 mod raw;
+#[cfg(feature = "schema")]
+mod schema;
 mod settings;
 mod validate;
 
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
 pub use model::{Command, ModelSettings, Table};
+#[cfg(feature = "schema")]
+pub use schema::schema;
 pub use settings::{Derivatives, DesignKind, DesignSettings, FitSettings, SpectrumSettings};
 
 use crate::mechanics::model::matrices::Matrices;

@@ -273,6 +273,7 @@ pub struct SelfTest {
 
 /// Verified bounds of the marginal and of the unstable share, each at the level of the certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MarginalBounds {
     /// Points that the surrogate calls marginal and the model does not.
     pub falsely_marginal: u64,
@@ -284,6 +285,7 @@ pub struct MarginalBounds {
 
 /// A verified bound on the stability proportion. Reports serialise it; surrogate files have a type of their own.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Certificate {
     /// Seed of its points.
     pub seed: u64,

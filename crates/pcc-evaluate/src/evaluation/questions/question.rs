@@ -69,6 +69,7 @@ impl Sampler {
 /// An input confined to an interval of its domain, in physical units; equal bounds fix it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Condition {
     /// Name of the input.
     pub input: String,
@@ -81,6 +82,7 @@ pub struct Condition {
 /// An input set to equally spaced values, in physical units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Sweep {
     /// Name of the input.
     pub input: String,

@@ -10,6 +10,7 @@ const HALVINGS: usize = 200;
 
 /// An interval that holds the true value with probability `level`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Interval {
     /// Lower end.
     pub lower: f64,
