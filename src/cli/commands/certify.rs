@@ -86,7 +86,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     if surrogate.certificates.iter().any(|known| known.seed == options.seed && known.problem_hash == problem) {
         bail!("{file}: has a certificate of seed {} already; choose another with --seed", options.seed);
     }
-    if study.inputs != surrogate.inputs {
+    if !study.inputs.is_same_as(&surrogate.inputs) {
         bail!(
             "{source}: has other inputs than {file}; even with --force they must be the same, in order and distribution"
         );

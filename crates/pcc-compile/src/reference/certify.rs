@@ -37,7 +37,7 @@ pub fn certify_with_model<'a>(
 ) -> Result<Certificate, ReferenceError> {
     let campaign = campaign.into();
     let study = campaign.study;
-    if surrogate.inputs != study.inputs {
+    if !surrogate.inputs.is_same_as(&study.inputs) {
         return Err(ReferenceError::other_problem(surrogate, study));
     }
     let plan = Plan::new(surrogate);

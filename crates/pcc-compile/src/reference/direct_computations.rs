@@ -64,7 +64,8 @@ impl ReferenceError {
 ///
 /// [`ReferenceError::OtherProblem`] if model, constants, inputs or spectrum differ.
 pub fn check_problem(surrogate: &Surrogate, study: &Study) -> Result<(), ReferenceError> {
-    let is_same = surrogate.provenance.problem_hash == study.problem_hash() && surrogate.inputs == study.inputs;
+    let is_same =
+        surrogate.provenance.problem_hash == study.problem_hash() && surrogate.inputs.is_same_as(&study.inputs);
     if is_same { Ok(()) } else { Err(ReferenceError::other_problem(surrogate, study)) }
 }
 

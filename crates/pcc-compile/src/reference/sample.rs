@@ -182,7 +182,7 @@ impl<'a> ModelSample<'a> {
         count: usize,
         mut consume: impl FnMut(usize, Block),
     ) -> Result<(), ReferenceError> {
-        if surrogate.inputs != self.study.inputs {
+        if !surrogate.inputs.is_same_as(&self.study.inputs) {
             return Err(ReferenceError::other_problem(surrogate, self.study));
         }
         for first in (0..count).step_by(CHUNK * CHUNKS_IN_FLIGHT) {

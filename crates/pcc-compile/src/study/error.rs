@@ -1,7 +1,7 @@
 //! What can be wrong with a study file.
 
 use crate::mechanics::model::matrices::MatricesError;
-use pcc_evaluate::probability::inputs::{InputError, MarginalError};
+use pcc_evaluate::probability::inputs::{DescriptionError, InputError, MarginalError};
 use thiserror::Error;
 
 /// A key of the study and its line.
@@ -247,6 +247,15 @@ pub enum StudyError {
         /// Why.
         #[source]
         cause: MarginalError,
+    },
+    /// A unit or label that cannot be shown.
+    #[error("{place}: {cause}")]
+    Description {
+        /// Where.
+        place: Place,
+        /// Why.
+        #[source]
+        cause: DescriptionError,
     },
     /// The distribution is given in neither or both of its two forms.
     #[error("{place}: give either lower and upper, or nominal and spread")]

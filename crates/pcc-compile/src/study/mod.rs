@@ -5,6 +5,7 @@ mod error;
 mod file;
 mod fit;
 mod identity;
+mod inputs;
 mod model;
 mod print;
 mod raw;

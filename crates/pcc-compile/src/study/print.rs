@@ -108,10 +108,19 @@ fn inputs(file: &mut Printer, study: &Study) {
     for input in study.inputs.inputs() {
         let parameters: String =
             input.marginal.parameters().into_iter().map(|(key, value)| format!(", {key} = {}", float(value))).collect();
-        let unit = unit_of(&study.model, &input.name);
-        let value = format!("{{ distribution = \"{}\"{parameters} }}", input.marginal.name());
+        let description = &input.description;
+        let given = [("unit", description.unit()), ("label", description.label())];
+        let texts: String =
+            given.into_iter().filter_map(|(key, value)| Some(format!(", {key} = {}", text(value?)))).collect();
+        let unit = if description.unit().is_some() { "" } else { unit_of(&study.model, &input.name) };
+        let value = format!("{{ distribution = \"{}\"{parameters}{texts} }}", input.marginal.name());
         file.line(&input.name, value, unit);
     }
+}
+
+/// A text in quotes, as TOML writes it.
+fn text(value: &str) -> String {
+    toml::Value::from(value).to_string()
 }
 
 /// Shortest text that reads back as the same number, always with a point or an exponent.

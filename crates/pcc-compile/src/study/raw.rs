@@ -116,6 +116,8 @@ pub(super) struct Input {
     pub upper: Option<f64>,
     pub nominal: Option<f64>,
     pub spread: Option<f64>,
+    pub unit: Option<Spanned<String>>,
+    pub label: Option<Spanned<String>>,
 }
 
 #[derive(Debug, Default, Deserialize)]

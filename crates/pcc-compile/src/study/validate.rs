@@ -175,7 +175,8 @@ impl Lines<'_> {
             if is_result_column(&name) {
                 return Err(StudyError::ResultColumn { place: self.place(format!("inputs.{name}"), &raw), name });
             }
-            inputs.push(Input { marginal: self.marginal(&name, parameter, &raw)?, name });
+            let marginal = self.marginal(&name, parameter, &raw)?;
+            inputs.push(Input { description: self.unit_and_label(&name, raw.get_ref())?, marginal, name });
         }
         InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
     }

@@ -77,7 +77,7 @@ fn inputs(section: &v1::Inputs) -> Result<InputSpace, ReadError> {
         if !(transform_fits && bounds_fit && !input.name.is_empty() && is_printable(&input.name)) {
             return Err(meaning("name, transform or bounds do not fit the distribution".to_owned()));
         }
-        inputs.push(Input { name: input.name.clone(), marginal: Marginal::Uniform(uniform) });
+        inputs.push(Input::new(input.name.clone(), Marginal::Uniform(uniform)));
     }
     InputSpace::new(inputs).map_err(|error| ReadError::Meaning { section: "inputs", message: error.to_string() })
 }

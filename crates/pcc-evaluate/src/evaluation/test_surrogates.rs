@@ -12,9 +12,8 @@ pub const XI: f64 = 0.577_350_269_189_625_8;
 
 /// The inputs x1, x2, … uniform between these bounds.
 pub fn inputs(bounds: &[(f64, f64)]) -> InputSpace {
-    let input = |(j, &(lower, upper)): (usize, &(f64, f64))| Input {
-        name: format!("x{}", j + 1),
-        marginal: Marginal::Uniform(Uniform::new(lower, upper).unwrap()),
+    let input = |(j, &(lower, upper)): (usize, &(f64, f64))| {
+        Input::new(format!("x{}", j + 1), Marginal::Uniform(Uniform::new(lower, upper).unwrap()))
     };
     InputSpace::new(bounds.iter().enumerate().map(input).collect()).unwrap()
 }

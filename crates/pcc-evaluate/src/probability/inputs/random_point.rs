@@ -22,7 +22,7 @@ pub fn random_point(space: &InputSpace, seed: u64, purpose: Purpose, index: u64,
 /// use pcc_evaluate::probability::inputs::{random_points, Input, InputSpace, Marginal, Uniform};
 /// use pcc_evaluate::probability::random::Purpose;
 /// let marginal = Marginal::Uniform(Uniform::new(0.0, 0.5)?);
-/// let space = InputSpace::new(vec![Input { name: "mu".to_owned(), marginal }])?;
+/// let space = InputSpace::new(vec![Input::new("mu", marginal)])?;
 /// let points = random_points(&space, 1, Purpose::Evaluation, 0..100);
 /// assert_eq!(points[40..], random_points(&space, 1, Purpose::Evaluation, 40..100));
 /// # Ok::<(), Box<dyn std::error::Error>>(())

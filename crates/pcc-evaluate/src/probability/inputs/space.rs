@@ -1,5 +1,6 @@
 //! The space of all uncertain inputs, independent of each other.
 
+use super::description::Description;
 use super::marginal::Marginal;
 use std::collections::HashSet;
 use thiserror::Error;
@@ -11,6 +12,32 @@ pub struct Input {
     pub name: String,
     /// Its distribution.
     pub marginal: Marginal,
+    /// Its unit and label, which are shown and change nothing.
+    pub description: Description,
+}
+
+impl Input {
+    /// An input without unit and label.
+    pub fn new(name: impl Into<String>, marginal: Marginal) -> Self {
+        Self { name: name.into(), marginal, description: Description::default() }
+    }
+
+    /// Its name with its unit, `k_x, N/m`: heads a column.
+    pub fn name_with_unit(&self) -> String {
+        with_unit(&self.name, &self.description)
+    }
+
+    /// What it is with its unit, `contact stiffness, N/m`: the title of an axis. Its name, if it has no label.
+    pub fn title(&self) -> String {
+        with_unit(self.description.label().unwrap_or(&self.name), &self.description)
+    }
+}
+
+fn with_unit(text: &str, description: &Description) -> String {
+    match description.unit() {
+        Some(unit) => format!("{text}, {unit}"),
+        None => text.to_owned(),
+    }
 }
 
 /// Why inputs do not form a space, or a point does not lie in it.
@@ -45,7 +72,7 @@ pub enum InputError {
 ///
 /// ```
 /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
-/// let mu = Input { name: "mu".into(), marginal: Marginal::Uniform(Uniform::new(0.0, 0.5)?) };
+/// let mu = Input::new("mu", Marginal::Uniform(Uniform::new(0.0, 0.5)?));
 /// let space = InputSpace::new(vec![mu])?;
 /// assert!(space.check(&[0.25]).is_ok());
 /// assert!(space.check(&[0.75]).is_err());
@@ -84,6 +111,24 @@ impl InputSpace {
     /// Names in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|input| input.name.as_str())
+    }
+
+    /// Whether names and distributions are the same in the same order: then a point means the same in both, whatever
+    /// units and labels say.
+    pub fn is_same_as(&self, other: &Self) -> bool {
+        let law = |input: &Input| (input.name.clone(), input.marginal);
+        self.0.iter().map(law).eq(other.0.iter().map(law))
+    }
+
+    /// The same inputs with these units and labels in turn.
+    pub fn described(mut self, descriptions: impl IntoIterator<Item = Description>) -> Self {
+        self.0.iter_mut().zip(descriptions).for_each(|(input, description)| input.description = description);
+        self
+    }
+
+    /// Whether some input has a unit or a label.
+    pub fn has_descriptions(&self) -> bool {
+        self.0.iter().any(|input| !input.description.is_empty())
     }
 
     /// Physical coordinates of the standardized point ξ.

@@ -1,0 +1,79 @@
+//! What an input has beside its law: how it is shown.
+
+use super::error::StudyError;
+use super::raw;
+use super::validate::Lines;
+use pcc_evaluate::probability::inputs::{Description, DescriptionError};
+
+impl Lines<'_> {
+    pub(super) fn unit_and_label(&self, name: &str, input: &raw::Input) -> Result<Description, StudyError> {
+        type Add = fn(Description, &str) -> Result<Description, DescriptionError>;
+        let mut description = Description::default();
+        let keys: [(_, _, Add); 2] = [
+            ("unit", &input.unit, |to, text| to.with_unit(text)),
+            ("label", &input.label, |to, text| to.with_label(text)),
+        ];
+        for (key, text, add) in keys {
+            if let Some(text) = text {
+                description = add(description, text.get_ref()).map_err(|cause| StudyError::Description {
+                    place: self.place(format!("inputs.{name}.{key}"), text),
+                    cause,
+                })?;
+            }
+        }
+        Ok(description)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::study::{Study, StudyError};
+
+    fn study(input: &str) -> Result<Study, StudyError> {
+        Study::from_toml(&format!(
+            "format = 1\nname = \"s\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nK = [[\"k\"]]\n[inputs]\nk = {{ distribution = \
+             \"uniform\", {input} }}\n"
+        ))
+    }
+
+    fn refusal(input: &str) -> String {
+        study(input).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn units_and_labels_are_kept_printed_and_change_no_hash() {
+        let plain = study("lower = 1.0, upper = 2.0").unwrap();
+        let texts = ["unit = \" N/m \"", "label = \"Steifigkeit \\\"k\\\", e\\u0301, 'µ' \\\\\""];
+        for given in [texts[0].to_owned(), texts[1].to_owned(), texts.join(", ")] {
+            let described = study(&format!("lower = 1.0, upper = 2.0, {given}")).unwrap();
+            assert_ne!(described, plain);
+            assert_eq!(Study::from_toml(&described.to_toml()).unwrap(), described, "{}", described.to_toml());
+            assert_eq!(described.problem_hash(), plain.problem_hash());
+            assert_eq!(described.study_hash(), plain.study_hash());
+            assert_eq!(described.model_hash(), plain.model_hash());
+            assert!(described.inputs.is_same_as(&plain.inputs));
+        }
+        let both = study(&format!("lower = 1.0, upper = 2.0, {}", texts.join(", "))).unwrap();
+        assert_eq!(both.inputs.inputs()[0].description.unit(), Some("N/m"));
+        assert_eq!(both.inputs.inputs()[0].description.label(), Some("Steifigkeit \"k\", e\u{301}, 'µ' \\"));
+        assert!(both.to_toml().contains("upper = 2.0, unit = \"N/m\", label = "), "{}", both.to_toml());
+    }
+
+    #[test]
+    fn units_and_labels_that_cannot_be_shown_are_refused_with_key_and_line() {
+        let long = "m".repeat(81);
+        let cases = [
+            ("unit = \"\"", "unit: is empty"),
+            ("unit = \"N\\n/m\"", "unit: has control characters"),
+            (&format!("unit = \"{}\"", &long[..41]), "unit: has 41 characters; write at most 40"),
+            ("label = \"  \"", "label: is empty"),
+            ("label = \"\\u001b[31mred\"", "label: has control characters"),
+            (&format!("label = \"{long}\""), "label: has 81 characters; write at most 80"),
+        ];
+        for (given, expected) in cases {
+            let message = refusal(&format!("lower = 1.0, upper = 2.0, {given}"));
+            assert!(message.starts_with(&format!("line 8: inputs.k.{expected}")), "{message}");
+        }
+        assert!(refusal("lower = 1.0, upper = 2.0, unit = 3").contains("expected a text in quotes"));
+    }
+}
