@@ -216,6 +216,11 @@ fn coverage(b: &mut B) -> Value {
     b.fields(&[("answered", &runs), ("unanswered", &runs)])
 }
 
+fn descriptions(b: &mut B) -> Value {
+    let input = |b: &mut B| b.fields(&[("unit", &|b| b.option(B::text)), ("label", &|b| b.option(B::text))]);
+    b.fields(&[("inputs", &|b| b.list(input))])
+}
+
 /// The document that a file holds, read by hand.
 fn document(file: &[u8]) -> Value {
     let mut b = Bytes { bytes: file.to_vec(), at: 0 };
@@ -223,7 +228,7 @@ fn document(file: &[u8]) -> Value {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [Field; 10] = [
+    let sections: [Field; 11] = [
         ("meta", &meta),
         ("inputs", &inputs),
         ("outputs", &outputs),
@@ -234,15 +239,16 @@ fn document(file: &[u8]) -> Value {
         ("self_test", &self_test),
         ("verdict", &verdict),
         ("coverage", &coverage),
+        ("descriptions", &descriptions),
     ];
-    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10, 11].into_iter().zip(sections) {
+    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12].into_iter().zip(sections) {
         let is_next = b.at < file.len() - 4 && u16::from_le_bytes([file[b.at], file[b.at + 1]]) == kind;
         if kind > 9 && !is_next {
             continue;
         }
         let header = [b.u16(), b.u16(), b.u16(), b.u16()];
         let version = header[1];
-        assert_eq!(header, [kind, version, u16::from(kind != 11), 0], "header of {name}");
+        assert_eq!(header, [kind, version, u16::from(kind < 11), 0], "header of {name}");
         let length = b.u64() as usize;
         let before = b.at;
         document[name] = match (name, version) {
@@ -293,6 +299,20 @@ fn it_reads_where_the_model_did_not_answer() {
     let found = document(&encode(&surrogate, Format::Binary).unwrap());
     assert_eq!(found, json);
     assert_eq!(found["coverage"]["unanswered"][0].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn it_reads_units_and_labels() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::described::surrogate();
+    let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(&surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    let expected = json!([
+        { "unit": null, "label": "friction coefficient" },
+        { "unit": "N/m", "label": "contact stiffness" },
+    ]);
+    assert_eq!(found["descriptions"]["inputs"], expected);
 }
 
 #[test]

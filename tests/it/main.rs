@@ -11,6 +11,7 @@ mod command_line;
 mod coverage;
 mod defaults;
 mod derivatives;
+mod described;
 mod determinism;
 mod documents;
 mod endings;

@@ -35,7 +35,7 @@ impl Section {
 }
 
 /// Names of the sections of kind 1, 2, ….
-pub(super) const SECTION_NAMES: [&str; 11] = [
+pub(super) const SECTION_NAMES: [&str; 12] = [
     "meta",
     "inputs",
     "outputs",
@@ -47,6 +47,7 @@ pub(super) const SECTION_NAMES: [&str; 11] = [
     "certificates",
     "verdict",
     "coverage",
+    "descriptions",
 ];
 
 /// Kind of the section of outputs, which has two versions.
@@ -61,9 +62,12 @@ pub(super) const VERDICT: u16 = 10;
 /// Kind of the optional section of runs that failed.
 pub(super) const COVERAGE: u16 = 11;
 
+/// Kind of the optional section of units and labels, which change no number.
+pub(super) const DESCRIPTIONS: u16 = 12;
+
 /// Whether readers need not understand a section.
 pub(super) fn is_optional(kind: u16) -> bool {
-    kind == CERTIFICATES || kind == COVERAGE
+    [CERTIFICATES, COVERAGE, DESCRIPTIONS].contains(&kind)
 }
 
 /// Sections 2 to 8 and 10, those that determine what a surrogate computes.
@@ -98,6 +102,9 @@ pub(super) fn sections(document: &Document) -> Result<Vec<Section>, WriteError> 
     }
     if let Some(coverage) = &document.coverage {
         sections.push(section(COVERAGE, coverage)?);
+    }
+    if let Some(descriptions) = &document.descriptions {
+        sections.push(section(DESCRIPTIONS, descriptions)?);
     }
     sections.sort_by_key(|section| section.kind);
     Ok(sections)

@@ -1,6 +1,8 @@
 //! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
 
-use super::binary::{CERTIFICATES, COVERAGE, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections};
+use super::binary::{
+    CERTIFICATES, COVERAGE, DESCRIPTIONS, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections,
+};
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
 use super::v2::{AnyCertificates, AnyOutputs};
@@ -90,6 +92,7 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         },
         verdict: sections.optional(VERDICT)?,
         coverage: sections.optional(COVERAGE)?,
+        descriptions: sections.optional(DESCRIPTIONS)?,
     };
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }

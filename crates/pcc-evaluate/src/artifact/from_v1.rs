@@ -2,7 +2,7 @@
 
 use super::error::ReadError;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
-use super::{v1, v2};
+use super::{descriptions, v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
@@ -37,7 +37,7 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
     Ok(Surrogate {
         provenance,
         coverage,
-        inputs,
+        inputs: descriptions::described(inputs, document.descriptions)?,
         outputs,
         mesh,
         expansions,

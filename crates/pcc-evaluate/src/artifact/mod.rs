@@ -6,6 +6,7 @@
 
 mod binary;
 mod container;
+mod descriptions;
 mod error;
 mod from_v1;
 mod json;

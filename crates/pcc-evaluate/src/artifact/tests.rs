@@ -7,6 +7,8 @@ use crate::surrogate::{Band, Certificate, MarginalBounds, Surrogate, VerdictBasi
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
+mod descriptions;
+
 /// Bytes before the first section, and those of a section's header.
 const HEADER: usize = 24;
 const SECTION_HEADER: usize = 16;

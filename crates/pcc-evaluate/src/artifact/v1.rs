@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::v2::{AnyCertificates, AnyOutputs, Coverage, Verdict};
+use super::v2::{AnyCertificates, AnyOutputs, Coverage, Descriptions, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -42,6 +42,9 @@ pub struct Document {
     /// Section 11, if the model did not answer everywhere. Since format 1.3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coverage: Option<Coverage>,
+    /// Section 12, if an input has a unit or a label. Since format 1.3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub descriptions: Option<Descriptions>,
 }
 
 /// Version of the format.

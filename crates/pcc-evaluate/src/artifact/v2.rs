@@ -1,6 +1,6 @@
 //! Section 3 in version 2: outputs with eigenvalues that are real, or can become so. Section 9 in version 2:
 //! certificates of systems that can be marginal. Section 10: what else there is to know of the verdict on stability.
-//! Section 11: where the model did not answer.
+//! Section 11: where the model did not answer. Section 12: units and labels of the inputs.
 //!
 //! Files are written with version 1 of a section wherever that can say it. The rules of [`super::v1`] hold: a
 //! published body never changes.
@@ -85,6 +85,26 @@ pub struct Coverage {
     pub answered: Vec<Vec<f64>>,
     /// Points that failed.
     pub unanswered: Vec<Vec<f64>>,
+}
+
+/// Section 12, optional and outside the content id: how the inputs are shown, in their order.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Descriptions {
+    /// One per input, in the order of section 2.
+    pub inputs: Vec<Description>,
+}
+
+/// How an input is shown.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// Unit of its values: at most 40 characters.
+    pub unit: Option<String>,
+    /// What it is: at most 80 characters.
+    pub label: Option<String>,
 }
 
 /// Certificates, in the version that says them.

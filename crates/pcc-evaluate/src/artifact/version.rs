@@ -16,7 +16,7 @@ pub const MAJOR: u16 = 1;
 /// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
 ///   the search for an expansion ended that full expansions have.
 /// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10; section 9 in
-///   version 2, with bounds of all shares; a search that ended because errors no longer fell; section 11.
+///   version 2, with bounds of all shares; a search that ended because errors no longer fell; sections 11 and 12.
 pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
@@ -31,7 +31,8 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
         surrogate.certificates.iter().any(|certificate| certificate.marginal.is_some() || certificate.failed > 0);
     let has_stalled = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
     let has_verdict = surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default();
-    match has_verdict || bounds_all || has_stalled || surrogate.coverage.is_some() {
+    let has_more_sections = surrogate.coverage.is_some() || surrogate.inputs.has_descriptions();
+    match has_verdict || bounds_all || has_stalled || has_more_sections {
         true => 3,
         false if needs_2 => 2,
         false => u16::from(has_clusters),
