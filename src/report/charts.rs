@@ -4,6 +4,7 @@ use super::sensitivity::{Bounded, IndexPair, SensitivityReport};
 use num_complex::Complex;
 use pcc_charts::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol};
 use pcc_evaluate::components::{Block, Label};
+use pcc_evaluate::probability::inputs::Input;
 use pcc_evaluate::probability::statistics::density;
 use pcc_evaluate::surrogate::Surrogate;
 use std::f64::consts::TAU;
@@ -113,7 +114,7 @@ fn by_degree(surrogate: &Surrogate, component: usize) -> Vec<f64> {
 }
 
 /// Growth rate of every eigenvalue and frequency of every mode over one input, in the order of their columns.
-pub(super) fn mode_charts(input: &str, x: &[f64], labels: &[Label], block: &Block) -> [Chart; 2] {
+pub(super) fn mode_charts(input: &Input, x: &[f64], labels: &[Label], block: &Block) -> [Chart; 2] {
     let mut labelled: Vec<(Label, &Vec<Complex<f64>>)> = labels.iter().copied().zip(&block.eigenvalues).collect();
     labelled.sort_by_key(|(label, _)| label.column());
     let name = |label: Label| match label {
@@ -139,16 +140,16 @@ pub(super) fn mode_charts(input: &str, x: &[f64], labels: &[Label], block: &Bloc
     let chart = |title: String, label: &str, series: Vec<Series>, guides: Vec<Guide>| Chart {
         description: format!("{title}, at {} random points of all inputs, from the surrogate.", x.len()),
         title,
-        x: Axis::linear(input),
+        x: Axis::linear(input.title()),
         y: Axis::linear(label),
         series,
         guides,
     };
     let limit = vec![Guide::Horizontal(0.0, "stability limit".to_owned())];
     [
-        chart(format!("Growth rates over {input}"), "Re λ in 1/s", series(|lambda| lambda.re, |_| true), limit),
+        chart(format!("Growth rates over {}", input.name), "Re λ in 1/s", series(|lambda| lambda.re, |_| true), limit),
         chart(
-            format!("Frequencies over {input}"),
+            format!("Frequencies over {}", input.name),
             "Im λ/2π in Hz",
             series(|lambda| lambda.im / TAU, |label| matches!(label, Label::Mode(_))),
             Vec::new(),

@@ -10,6 +10,7 @@ use pcc_compile::reference::Reference;
 use pcc_evaluate::components::{EigenvalueSummary, Label, Margin, Output, Summary};
 use pcc_evaluate::evaluation::{Condition, Question, Sampler};
 use pcc_evaluate::foundation::count;
+use pcc_evaluate::probability::inputs::Input;
 use pcc_evaluate::probability::statistics::{Interval, Moments, Proportion, Share};
 use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::{Quantile, Surrogate};
@@ -113,6 +114,8 @@ pub struct OnlyInText {
     pub merged_parts: Option<usize>,
     /// Randomisations that were asked for.
     pub requested_replicates: u32,
+    /// The inputs of a surrogate, for units of conditions.
+    pub inputs: Vec<Input>,
 }
 
 /// Moments and range.
@@ -258,6 +261,7 @@ impl EvalReport {
             has_all_samples: answer.is_complete,
             merged_parts: found.merged_parts,
             requested_replicates: question.replicates,
+            inputs: surrogate.inputs.inputs().to_vec(),
         };
         report.conditions = question.conditions.clone();
         report.standard_error = share.standard_error;
@@ -280,8 +284,8 @@ impl EvalReport {
             sensitivity.inputs.retain(|input| free(&input.input.as_str()));
             sensitivity
         });
-        let names: Vec<&str> = surrogate.inputs.names().collect();
-        report.critical = found.critical.as_ref().map(|(input, values)| CriticalReport::new(names[*input], values));
+        let inputs = surrogate.inputs.inputs();
+        report.critical = found.critical.as_ref().map(|(input, values)| CriticalReport::new(&inputs[*input], values));
         report.unanswered_proportion = found.unanswered.map(|found| found.proportion());
         report.bounds = found.unanswered.as_ref().map(Bounds::of);
         report.events = events(question, cell);
@@ -381,7 +385,12 @@ impl EvalReport {
             warnings: Vec::new(),
             max_re_residuals: Vec::new(),
             elapsed_seconds,
-            only_in_text: OnlyInText { has_all_samples: true, merged_parts: None, requested_replicates: 1 },
+            only_in_text: OnlyInText {
+                has_all_samples: true,
+                merged_parts: None,
+                requested_replicates: 1,
+                inputs: Vec::new(),
+            },
         }
     }
 }

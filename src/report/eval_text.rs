@@ -204,7 +204,7 @@ impl EvalReport {
             facts.add("sampler", format!("{}, {done}", self.sampler), "");
         }
         if !self.conditions.is_empty() {
-            facts.add("where", conditions_text(&self.conditions), "");
+            facts.add("where", conditions_text(&self.conditions, &self.only_in_text.inputs), "");
         }
     }
 }

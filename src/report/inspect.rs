@@ -104,6 +104,10 @@ pub struct InspectReport {
 pub struct InputReport {
     /// Name.
     pub name: String,
+    /// What it is; null if the study does not say.
+    pub label: Option<String>,
+    /// Unit of its values; null if the study does not say.
+    pub unit: Option<String>,
     /// Distribution.
     pub distribution: &'static str,
     /// Lower bound.
@@ -215,6 +219,8 @@ fn input(input: &pcc_evaluate::probability::inputs::Input) -> InputReport {
     let Marginal::Uniform(uniform) = input.marginal;
     InputReport {
         name: input.name.clone(),
+        label: input.description.label().map(str::to_owned),
+        unit: input.description.unit().map(str::to_owned),
         distribution: "uniform",
         lower: uniform.lower(),
         upper: uniform.upper(),
@@ -297,16 +303,20 @@ impl InspectReport {
 
     pub(super) fn input_table(&self) -> Table {
         let right = Align::Right;
-        let mut inputs = Table::new(&[
-            ("input", Align::Left),
-            ("distribution", Align::Left),
-            ("lower", right),
-            ("upper", right),
-            ("polynomials", Align::Left),
-        ]);
+        let left = Align::Left;
+        let mut columns = vec![("input", left), ("distribution", left), ("lower", right), ("upper", right)];
+        let has_units = self.inputs.iter().any(|input| input.unit.is_some());
+        columns.extend(has_units.then_some(("unit", left)));
+        columns.push(("polynomials", left));
+        columns.extend(self.inputs.iter().any(|input| input.label.is_some()).then_some(("label", left)));
+        let mut inputs = Table::new(&columns);
         for input in &self.inputs {
             let (lower, upper) = (significant(input.lower, 6), significant(input.upper, 6));
-            inputs.row([&input.name, input.distribution, &lower, &upper, input.family]);
+            let mut row = vec![input.name.as_str(), input.distribution, &lower, &upper];
+            row.extend(has_units.then(|| input.unit.as_deref().unwrap_or_default()));
+            row.extend([input.family, input.label.as_deref().unwrap_or_default()]);
+            row.truncate(columns.len());
+            inputs.row(row);
         }
         inputs
     }

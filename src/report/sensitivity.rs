@@ -7,6 +7,7 @@ use pcc_evaluate::components::Label;
 use pcc_evaluate::evaluation::{
     CRITICAL_LEVELS, CriticalValues, Crossing, Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity,
 };
+use pcc_evaluate::probability::inputs::Input;
 use serde::Serialize;
 use std::fmt;
 
@@ -143,6 +144,9 @@ impl fmt::Display for SensitivityReport {
 pub struct CriticalReport {
     /// Name of the input.
     pub input: String,
+    /// Its name with its unit.
+    #[serde(skip)]
+    pub head: String,
     /// Samples of the other inputs.
     pub samples: u64,
     /// Share that stays stable over the whole domain.
@@ -247,12 +251,13 @@ pub struct CriticalQuantile {
 }
 
 impl CriticalReport {
-    /// The report for the input with this name.
-    pub fn new(input: &str, found: &CriticalValues) -> Self {
+    /// The report for this input.
+    pub fn new(input: &Input, found: &CriticalValues) -> Self {
         let share = |part: u64| part as f64 / found.samples as f64;
         let quantile = |level| CriticalQuantile { level, value: found.quantile(level) };
         Self {
-            input: input.to_owned(),
+            input: input.name.clone(),
+            head: input.name_with_unit(),
             samples: found.samples,
             never: share(found.never),
             unstable_from_start: share(found.unstable_from_start),
@@ -268,7 +273,7 @@ impl CriticalReport {
 impl fmt::Display for CriticalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = |value: Option<f64>| value.map_or("never".to_owned(), |value| significant(value, 4));
-        writeln!(f, "\ncritical {}: the smallest value at which the system is unstable", self.input)?;
+        writeln!(f, "\ncritical {}: the smallest value at which the system is unstable", self.head)?;
         let columns = width(f);
         let mut facts = Facts::default();
         facts.add("stable throughout", share(self.never), "");
@@ -281,7 +286,7 @@ impl fmt::Display for CriticalReport {
         let levels: Vec<String> = self.quantiles.iter().map(|q| super::numbers::level(q.level)).collect();
         heads.extend(levels.iter().map(|level| (level.as_str(), Align::Right)));
         let mut table = Table::new(&heads);
-        let mut row = vec![self.input.clone()];
+        let mut row = vec![self.head.clone()];
         row.extend(self.quantiles.iter().map(|quantile| value(quantile.value)));
         table.row(row);
         write!(f, "{table:columns$}")?;

@@ -111,7 +111,7 @@ impl SurrogatePage<'_> {
         for j in inputs {
             let input = &self.surrogate.inputs.inputs()[j];
             let x: Vec<f64> = self.points[..shown].iter().map(|point| input.marginal.physical(point[j])).collect();
-            charts.extend(mode_charts(&input.name, &x, &self.surrogate.labels(), &few));
+            charts.extend(mode_charts(input, &x, &self.surrogate.labels(), &few));
         }
         page.charts(&charts);
         page.table(&self.eval.mode_table());

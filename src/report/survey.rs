@@ -5,6 +5,7 @@ use super::numbers::{self, level, plain, share, significant};
 use super::table::{Align, Table};
 use pcc_evaluate::evaluation::{Bins, Cell, Condition, Histogram, Question};
 use pcc_evaluate::foundation::count;
+use pcc_evaluate::probability::inputs::Input;
 use pcc_evaluate::probability::statistics::Interval;
 use serde::Serialize;
 
@@ -108,11 +109,16 @@ pub(super) fn histograms(question: &Question, found: &[Histogram]) -> (Vec<Histo
     )
 }
 
-/// "mu from 0.1 to 0.2, k_p = 15800000"
-pub(super) fn conditions_text(conditions: &[Condition]) -> String {
-    let text = |condition: &Condition| match condition.lower == condition.upper {
-        true => format!("{} = {}", condition.input, plain(condition.lower)),
-        false => format!("{} from {} to {}", condition.input, plain(condition.lower), plain(condition.upper)),
+/// "mu from 0.1 to 0.2, k_p = 15800000 N/m"
+pub(super) fn conditions_text(conditions: &[Condition], inputs: &[Input]) -> String {
+    let text = |condition: &Condition| {
+        let Condition { input, lower, upper } = condition;
+        let unit = inputs.iter().find(|one| one.name == *input).and_then(|input| input.description.unit());
+        let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+        match lower == upper {
+            true => format!("{input} = {}{unit}", plain(*lower)),
+            false => format!("{input} from {} to {}{unit}", plain(*lower), plain(*upper)),
+        }
     };
     conditions.iter().map(text).collect::<Vec<_>>().join(", ")
 }

@@ -4,6 +4,7 @@ use super::eval::QuantileReport;
 use super::judgement::judged_by;
 use super::survey::{EventReport, LEVEL, events};
 use pcc_evaluate::evaluation::{Cell, Condition, Sweep};
+use pcc_evaluate::probability::inputs::Input;
 use pcc_evaluate::probability::statistics::Interval;
 use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::Decision;
@@ -48,6 +49,9 @@ pub struct SweepReport {
     /// What to know of a surrogate whose model did not answer everywhere; absent if it did.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// The inputs of the surrogate, whose units and labels head columns and axes.
+    #[serde(skip)]
+    pub inputs: Vec<Input>,
     /// Files that were written.
     #[serde(skip)]
     pub files: Vec<String>,
@@ -127,6 +131,7 @@ impl SweepReport {
             sweeps: question.sweeps.clone(),
             points: answer.cells.iter().enumerate().map(point).collect(),
             max_re_residuals: residuals.iter().map(|q| QuantileReport { level: q.level, value: q.value }).collect(),
+            inputs: surrogate.inputs.inputs().to_vec(),
             files: Vec::new(),
             merged_parts: found.merged_parts,
             warnings: super::coverage::warning(found.surrogate).into_iter().collect(),
@@ -134,6 +139,20 @@ impl SweepReport {
         };
         report.verdict = report.verdict_sentence();
         report
+    }
+
+    /// The head of a column with the values of a sweep: `k_x, N/m`.
+    pub(super) fn head(&self, sweep: &Sweep) -> String {
+        self.input(sweep).map_or(sweep.input.clone(), Input::name_with_unit)
+    }
+
+    /// The title of an axis with the values of a sweep: `contact stiffness, N/m`.
+    pub(super) fn title(&self, sweep: &Sweep) -> String {
+        self.input(sweep).map_or(sweep.input.clone(), Input::title)
+    }
+
+    fn input(&self, sweep: &Sweep) -> Option<&Input> {
+        self.inputs.iter().find(|input| input.name == sweep.input)
     }
 
     /// Whether samples of some point are neither stable nor unstable.

@@ -21,7 +21,7 @@ pub fn sweep_chart(report: &SweepReport) -> String {
 fn title_of_conditions(report: &SweepReport) -> String {
     match report.conditions.is_empty() {
         true => String::new(),
-        false => format!(" where {}", conditions_text(&report.conditions)),
+        false => format!(" where {}", conditions_text(&report.conditions, &report.inputs)),
     }
 }
 
@@ -70,7 +70,7 @@ fn curve(report: &SweepReport, sweep: &Sweep) -> Chart {
     Chart {
         title: format!("{}: stability over {}{}", report.study, sweep.input, title_of_conditions(report)),
         description: report.verdict.clone(),
-        x: Axis::linear(sweep.input.clone()),
+        x: Axis::linear(report.title(sweep)),
         y: if is_rare { Axis::linear("unstable, %") } else { Axis::linear("stable, %").between(0.0, 100.0) },
         series,
         guides: Vec::new(),
@@ -93,8 +93,8 @@ fn map(report: &SweepReport, vertical: &Sweep, horizontal: &Sweep) -> Chart {
             title_of_conditions(report)
         ),
         description: report.verdict.clone(),
-        x: Axis::linear(horizontal.input.clone()).between(horizontal.from, horizontal.to),
-        y: Axis::linear(vertical.input.clone()).between(vertical.from, vertical.to),
+        x: Axis::linear(report.title(horizontal)).between(horizontal.from, horizontal.to),
+        y: Axis::linear(report.title(vertical)).between(vertical.from, vertical.to),
         series: vec![Series::new("stable", Color::Blue, Marks::Cells(cells))],
         guides: Vec::new(),
     }

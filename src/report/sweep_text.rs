@@ -65,7 +65,7 @@ impl SweepReport {
             facts.add("sampler", format!("{}, {} replicates", self.sampler, self.replicates), "");
         }
         if !self.conditions.is_empty() {
-            facts.add("where", conditions_text(&self.conditions), "");
+            facts.add("where", conditions_text(&self.conditions, &self.inputs), "");
         }
         facts.add("judged by", self.judged_by.clone(), "");
         facts.add("surrogate band", self.width_of_band(), "");
@@ -88,7 +88,8 @@ impl SweepReport {
     /// One line per point, with a bar.
     fn table(&self, width: usize) -> Table {
         let right = Align::Right;
-        let mut columns: Vec<(&str, Align)> = self.sweeps.iter().map(|sweep| (sweep.input.as_str(), right)).collect();
+        let swept: Vec<String> = self.sweeps.iter().map(|sweep| self.head(sweep)).collect();
+        let mut columns: Vec<(&str, Align)> = swept.iter().map(|head| (head.as_str(), right)).collect();
         columns.extend([("stable", right), ("95 % interval", right)]);
         let has_marginal = self.has_marginal();
         columns.extend(has_marginal.then_some(("marginal", right)));
@@ -124,7 +125,7 @@ impl SweepReport {
         let width = (0..vertical.points as usize).map(|row| label(row).chars().count()).max().unwrap_or(0);
         let most_columns = available.saturating_sub(width + 3).clamp(1, MOST_COLUMNS) as u32;
         let (row_step, column_step) = (vertical.points.div_ceil(MOST_ROWS), horizontal.points.div_ceil(most_columns));
-        writeln!(f, "{:>width$}   stable: 0 to 9 tenths, · none, # all", vertical.input)?;
+        writeln!(f, "{:>width$}   stable: 0 to 9 tenths, · none, # all", self.head(vertical))?;
         let rows = self.points.chunks(columns).enumerate().filter(|(row, _)| row.is_multiple_of(row_step as usize));
         for (row, points) in rows.collect::<Vec<_>>().into_iter().rev() {
             let shown = points.iter().step_by(column_step as usize);
@@ -135,9 +136,10 @@ impl SweepReport {
         let gap =
             columns.div_ceil(column_step as usize).saturating_sub(from.chars().count() + to.chars().count()).max(1);
         let over = format!("{:width$}   {from}{}{to}", "", " ".repeat(gap));
-        match over.chars().count() + 2 + horizontal.input.chars().count() <= available {
-            true => writeln!(f, "{over}  {}", horizontal.input)?,
-            false => writeln!(f, "{over}\n{:width$}   {}", "", horizontal.input)?,
+        let head = self.head(horizontal);
+        match over.chars().count() + 2 + head.chars().count() <= available {
+            true => writeln!(f, "{over}  {head}")?,
+            false => writeln!(f, "{over}\n{:width$}   {head}", "")?,
         }
         if row_step > 1 || column_step > 1 {
             writeln!(

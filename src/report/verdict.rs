@@ -36,7 +36,7 @@ impl EvalReport {
     pub(super) fn verdict_sentence(&self) -> String {
         let where_asked = match self.conditions.is_empty() {
             true => String::new(),
-            false => format!(" with {}", conditions_text(&self.conditions)),
+            false => format!(" with {}", conditions_text(&self.conditions, &self.only_in_text.inputs)),
         };
         let mut reasons = Vec::new();
         if self.unstable_proportion > 0.0 {

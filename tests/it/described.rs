@@ -5,6 +5,7 @@ use crate::support::command::{output, refusal};
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::{Format, decode, encode};
 use pcc_evaluate::surrogate::Surrogate;
+use serde_json::{Value, json};
 use std::fs;
 
 const PLAIN: &str = r#"
@@ -70,6 +71,70 @@ fn studies_are_shown_with_them() {
     let shown = output(folder.path(), &["build", "described.toml", "--show-study"]);
     let line = "k_n = { distribution = \"uniform\", lower = 1800.0, upper = 2400.0, unit = \"N/m\", label = \"contact stiffness\" }";
     assert!(shown.contains(line), "{shown}");
+}
+
+#[test]
+fn inspect_and_pages_show_them() {
+    let folder = workplace();
+    let text = output(folder.path(), &["inspect", "described.pcc"]);
+    let table = "\
+input  distribution    lower     upper  unit  polynomials  label
+mu     uniform             0  0.500000        legendre     friction coefficient
+k_n    uniform       1800.00   2400.00  N/m   legendre     contact stiffness
+";
+    assert!(text.contains(table), "{text}");
+    assert!(!output(folder.path(), &["inspect", "plain.pcc"]).contains("unit  "));
+    let inputs = |name: &str| {
+        let text = output(folder.path(), &["inspect", name, "--json"]);
+        let inputs = serde_json::from_str::<Value>(&text).unwrap()["inputs"].take();
+        json!([[inputs[0]["unit"], inputs[0]["label"]], [inputs[1]["unit"], inputs[1]["label"]]])
+    };
+    assert_eq!(inputs("plain.pcc"), json!([[null, null], [null, null]]));
+    assert_eq!(inputs("described.pcc"), json!([[null, "friction coefficient"], ["N/m", "contact stiffness"]]));
+    output(folder.path(), &["report", "described.pcc", "-n", "1000", "-o", "page.html"]);
+    let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
+    for shown in [">contact stiffness, N/m<", ">friction coefficient<", "Growth rates over k_n"] {
+        assert!(page.contains(shown), "{shown}");
+    }
+}
+
+#[test]
+fn answers_have_units() {
+    let folder = workplace();
+    let eval =
+        |question: &[&str]| output(folder.path(), &[&["eval", "described.pcc", "-n", "1000"][..], question].concat());
+    let confined = eval(&["--where", "k_n=1900..2000"]);
+    assert!(confined.contains("k_n from 1900 to 2000 N/m"), "{confined}");
+    assert!(eval(&["--where", "k_n=1900"]).contains("k_n = 1900 N/m"));
+    assert!(eval(&["--where", "mu=0.1..0.2"]).contains("mu from 0.1 to 0.2\n"));
+    let critical = eval(&["--critical", "k_n"]);
+    assert!(
+        critical.contains("critical k_n, N/m: the smallest value") && critical.contains("\nk_n, N/m "),
+        "{critical}"
+    );
+    assert!(critical.contains("\nwhat decides") && critical.contains("\nmu  "), "{critical}");
+}
+
+#[test]
+fn sweeps_have_units_and_axes_have_labels() {
+    let folder = workplace();
+    let sweep = |surrogate: &str, question: &[&str]| {
+        let table = ["--table", "sweep.csv", "--chart", "sweep.svg"];
+        let text = output(folder.path(), &[&["eval", surrogate, "-n", "1000"][..], question, &table].concat());
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        let found = (text, read("sweep.csv"), read("sweep.svg"));
+        fs::remove_file(folder.path().join("sweep.csv")).unwrap();
+        fs::remove_file(folder.path().join("sweep.svg")).unwrap();
+        found
+    };
+    let one = ["--sweep", "k_n=1800..2400:3", "--where", "mu=0.1..0.2"];
+    let (text, table, chart) = sweep("described.pcc", &one);
+    assert!(text.contains("\nk_n, N/m  stable"), "{text}");
+    assert!(chart.contains(">contact stiffness, N/m<"), "{chart}");
+    assert_eq!(table, sweep("plain.pcc", &one).1, "columns and numbers stay");
+    let (map, _, chart) = sweep("described.pcc", &["--sweep", "k_n=1800..2400:5", "--sweep", "mu=0..0.5:9"]);
+    assert!(map.contains("\nk_n, N/m   stable: 0 to 9 tenths"), "{map}");
+    assert!(chart.contains(">contact stiffness, N/m<") && chart.contains(">friction coefficient<"), "{chart}");
 }
 
 #[test]

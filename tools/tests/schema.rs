@@ -71,9 +71,9 @@ fn studies_satisfy_the_schema_and_unknown_keys_do_not() {
         .into_iter()
         .map(|path| (path.display().to_string(), fs::read_to_string(path).unwrap()))
         .collect();
-    let models = text("docs/MODELS.md");
+    let models = text("docs/how-to/own-model.md");
     let blocks = models.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    studies.extend(blocks.filter(|block| block.starts_with("format")).map(|block| ("MODELS.md".into(), block.into())));
+    studies.extend(blocks.filter(|block| block.starts_with("format")).map(|block| ("own-model.md".into(), block.into())));
     assert!(studies.len() >= 50, "the studies are looked at: {}", studies.len());
     for (name, text) in studies {
         let study: Value = toml::from_str(&text).unwrap();

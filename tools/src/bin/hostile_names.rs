@@ -4,7 +4,7 @@
 
 use pcc_evaluate::artifact::{Format, encode, read};
 use pcc_evaluate::foundation::save;
-use pcc_evaluate::probability::inputs::InputSpace;
+use pcc_evaluate::probability::inputs::{Description, InputSpace};
 use std::error::Error;
 use std::path::Path;
 
@@ -16,7 +16,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut surrogate = read(&shipped)?.surrogate;
     surrogate.provenance.study_name = HOSTILE.to_owned();
     let mut inputs = surrogate.inputs.inputs().to_vec();
-    inputs.iter_mut().for_each(|input| input.name.push_str(HOSTILE));
+    let shown = Description::default().with_unit(HOSTILE)?.with_label(HOSTILE)?;
+    for input in &mut inputs {
+        input.name.push_str(HOSTILE);
+        input.description = shown.clone();
+    }
     surrogate.inputs = InputSpace::new(inputs)?;
     for output in &mut surrogate.outputs {
         output.name.push_str(HOSTILE);
