@@ -9,6 +9,7 @@ mod inputs;
 mod model;
 mod print;
 mod raw;
+mod relative;
 #[cfg(feature = "schema")]
 mod schema;
 mod settings;

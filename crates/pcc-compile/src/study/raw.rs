@@ -115,9 +115,17 @@ pub(super) struct Input {
     pub lower: Option<f64>,
     pub upper: Option<f64>,
     pub nominal: Option<f64>,
-    pub spread: Option<f64>,
+    pub spread: Option<Spanned<Relative>>,
     pub unit: Option<Spanned<String>>,
     pub label: Option<Spanned<String>>,
+}
+
+/// A quantity relative to another: a number, or a text in percent.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "expected a number like 0.1, or a text in percent like \"10%\"")]
+pub(super) enum Relative {
+    Number(f64),
+    Text(String),
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -191,7 +191,8 @@ impl Lines<'_> {
         let input = raw.get_ref();
         self.word(&format!("{key}.distribution"), &input.distribution, &[("uniform", ())])?;
         let place = self.place(&key, raw);
-        let (lower, upper) = match (input.lower, input.upper, input.nominal, input.spread) {
+        let spread = input.spread.as_ref().map(|spread| self.spread(&key, spread)).transpose()?;
+        let (lower, upper) = match (input.lower, input.upper, input.nominal, spread) {
             (Some(lower), Some(upper), None, None) => (lower, upper),
             (None, None, Some(nominal), Some(spread)) => (nominal * (1.0 - spread), nominal * (1.0 + spread)),
             _ => return Err(StudyError::DistributionForm { place }),
