@@ -73,7 +73,8 @@ fn studies_satisfy_the_schema_and_unknown_keys_do_not() {
         .collect();
     let models = text("docs/how-to/own-model.md");
     let blocks = models.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
-    studies.extend(blocks.filter(|block| block.starts_with("format")).map(|block| ("own-model.md".into(), block.into())));
+    studies
+        .extend(blocks.filter(|block| block.starts_with("format")).map(|block| ("own-model.md".into(), block.into())));
     assert!(studies.len() >= 50, "the studies are looked at: {}", studies.len());
     for (name, text) in studies {
         let study: Value = toml::from_str(&text).unwrap();
