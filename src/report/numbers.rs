@@ -24,14 +24,6 @@ enum Rounding {
 }
 
 impl Rounding {
-    fn of(self, value: f64) -> f64 {
-        match self {
-            Self::Nearest => value.round(),
-            Self::Down => value.floor(),
-            Self::Up => value.ceil(),
-        }
-    }
-
     fn reversed(self) -> Self {
         match self {
             Self::Nearest => Self::Nearest,
@@ -39,6 +31,21 @@ impl Rounding {
             Self::Up => Self::Down,
         }
     }
+
+    /// The whole number of units near `value`, where `read` says what so many units are as numbers are read.
+    fn units(self, value: f64, unit: f64, read: impl Fn(f64) -> f64) -> f64 {
+        let nearest = (value / unit).round();
+        match self {
+            Self::Down if read(nearest) > value => nearest - 1.0,
+            Self::Up if read(nearest) < value => nearest + 1.0,
+            _ => nearest,
+        }
+    }
+}
+
+/// The number that a decimal says.
+fn read(decimal: &str) -> f64 {
+    decimal.parse().unwrap_or(f64::NAN)
 }
 
 /// `value` with so many significant digits; powers of ten only for very large and very small numbers.
@@ -124,6 +131,7 @@ pub fn share(value: f64) -> String {
 /// ```
 /// use pcc::report::share_range;
 /// assert_eq!(share_range(0.198991, 0.200561), "19.899 to 20.057 %");
+/// assert_eq!(share_range(0.19899, 0.20056), "19.899 to 20.056 %");
 /// assert_eq!(share_range(4.04e-6, 4.85e-6), "4.0·10⁻⁶ to 4.9·10⁻⁶");
 /// assert_eq!(share_range(1.0 - 4.85e-6, 1.0 - 4.04e-6), "1 − 4.9·10⁻⁶ to 1 − 4.0·10⁻⁶");
 /// assert_eq!(share_range(0.0, 3.7e-6), "0 to 3.7·10⁻⁶");
@@ -149,8 +157,9 @@ pub fn share_range(lower: f64, upper: f64) -> String {
         value if value <= 0.0 => "0".to_owned(),
         value if value >= 1.0 => "100".to_owned(),
         value => {
-            let unit = 10f64.powi(decimals as i32);
-            format!("{:.decimals$}", rounding.of(100.0 * value * unit) / unit)
+            let unit = 10f64.powi(-(decimals as i32) - 2);
+            let text = |units: f64| format!("{:.decimals$}", units / 10f64.powi(decimals as i32));
+            text(rounding.units(value, unit, |units| read(&format!("{}e-2", text(units)))))
         }
     };
     format!("{} to {} %", end(lower, low), end(upper, high))
@@ -164,7 +173,7 @@ pub(super) fn interval(interval: &Interval) -> String {
 /// Two digits and a power of ten.
 fn small(value: f64, rounding: Rounding) -> String {
     let exponent = value.log10().floor() as i32;
-    let tenths = rounding.of(10.0 * value / 10f64.powi(exponent));
+    let tenths = rounding.units(value, 10f64.powi(exponent - 1), |tenths| read(&format!("{tenths}e{}", exponent - 1)));
     match tenths >= 100.0 {
         true => power_of_ten("1.0", exponent + 1),
         false => power_of_ten(&format!("{:.1}", tenths / 10.0), exponent),

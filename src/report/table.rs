@@ -103,8 +103,8 @@ impl Table {
         let start: Vec<usize> = (0..keys).collect();
         let length = |columns: &[usize]| columns.iter().map(|&k| widths[k] + GAP).sum::<usize>();
         let (mut parts, mut part) = (Vec::new(), start.clone());
-        for column in keys..widths.len() {
-            if part.len() > keys && length(&part) + widths[column] > width {
+        for (column, own) in widths.iter().enumerate().skip(keys) {
+            if part.len() > keys && length(&part) + own > width {
                 parts.push(std::mem::replace(&mut part, start.clone()));
             }
             part.push(column);
