@@ -1,6 +1,6 @@
 //! What a build spent, and how good its surrogate is.
 
-use super::confidence::{error_words, is_of_modes_left_out};
+use super::confidence::error_words;
 use super::fit::{FitReport, share_of_variance};
 use super::layout::{Facts, width, write_verdict, write_warnings};
 use super::numbers::significant;
@@ -134,7 +134,7 @@ impl BuildReport {
             components: FitReport::of(surrogate),
             elapsed_seconds,
         };
-        report.verdict = report.verdict(is_of_modes_left_out(surrogate));
+        report.verdict = report.verdict(error_words(surrogate));
         report
     }
 }
@@ -162,11 +162,11 @@ pub(super) fn level_list(levels: &[u64]) -> String {
 }
 
 impl BuildReport {
-    fn verdict(&self, of_modes_left_out: bool) -> String {
+    fn verdict(&self, error_words: &str) -> String {
         let runs = plural(self.direct_computations as usize, "model run");
         let derivatives = with_derivatives(self.runs_with_derivatives, self.direct_computations);
         let error = match self.estimated_error_percent {
-            Some(error) => format!("estimated error {} % {}", significant(error, 2), error_words(of_modes_left_out)),
+            Some(error) => format!("estimated error {} % {}", significant(error, 2), error_words),
             None => "its error is not estimated".to_owned(),
         };
         format!("{} is built from {runs}{derivatives}; {error}.", self.study)

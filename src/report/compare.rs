@@ -177,7 +177,11 @@ impl CompareReport {
         let mut facts = Facts::default();
         let error = format!("{} % of the stable share", percentage(self.relative_error_percent));
         facts.add("stable, model", share(self.proportion_model), "");
-        facts.add("stable, surrogate", share(self.proportion_surrogate), format!("relative error {error}"));
+        let error = match self.failed {
+            0 => format!("relative error {error}"),
+            _ => format!("relative error at most {error}, if all that failed disagree"),
+        };
+        facts.add("stable, surrogate", share(self.proportion_surrogate), error);
         if self.marginal_model + self.marginal_surrogate > 0.0 {
             let shares =
                 |model, surrogate| format!("{} by the model, {} by the surrogate", share(model), share(surrogate));

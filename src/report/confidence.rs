@@ -1,6 +1,6 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
-use super::numbers::{level, share_range, significant};
+use super::numbers::{level, share, share_range, significant};
 use super::survey::LEVEL;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Proportion};
@@ -32,6 +32,8 @@ pub struct Basis {
     pub samples: u64,
     /// Independent randomisations that the interval is made from; 1 if it is from the number of samples.
     pub replicates: u64,
+    /// The share of samples that are not unstable: what the estimated error is relative to.
+    pub not_unstable: f64,
     /// Whether the samples are from a part of the domain alone.
     pub is_confined: bool,
     /// Whether the estimated error is the part of modes left out alone, because there was one design level.
@@ -70,7 +72,12 @@ pub struct VerifiedBound {
 impl Confidence {
     /// `stable` counts the stable samples, `if_shifted` those that would be if max Re λ were larger by the lower, and
     /// by the upper, end of the band.
-    pub fn new(surrogate: &Surrogate, stable: Proportion, if_shifted: [u64; 2], interval: Interval) -> Self {
+    pub fn new(
+        surrogate: &Surrogate,
+        (stable, not_unstable): (Proportion, f64),
+        if_shifted: [u64; 2],
+        interval: Interval,
+    ) -> Self {
         let decision = &surrogate.decision;
         let share = |hits| Proportion { hits, samples: stable.samples }.value();
         let band = Interval { lower: share(if_shifted[1]), upper: share(if_shifted[0]), level: Decision::BAND_LEVEL };
@@ -82,6 +89,7 @@ impl Confidence {
             basis: Basis {
                 samples: stable.samples,
                 replicates: 1,
+                not_unstable,
                 is_confined: false,
                 of_modes_left_out: is_of_modes_left_out(surrogate),
             },
@@ -95,7 +103,13 @@ impl Confidence {
             surrogate_band: None,
             estimated_error_percent: None,
             verified_bound: None,
-            basis: Basis { samples: stable.samples, replicates: 1, is_confined: false, of_modes_left_out: false },
+            basis: Basis {
+                samples: stable.samples,
+                replicates: 1,
+                not_unstable: stable.value(),
+                is_confined: false,
+                of_modes_left_out: false,
+            },
         }
     }
 
@@ -128,11 +142,19 @@ pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
 }
 
 /// What an estimated error is a share of, and where it is from.
-pub(super) fn error_words(of_modes_left_out: bool) -> &'static str {
-    match of_modes_left_out {
-        true => "of the stable share, by left-out modes",
-        false => "of the stable share, by left-out points",
+pub(super) fn error_words(surrogate: &Surrogate) -> &'static str {
+    match (surrogate.is_undamped(), is_of_modes_left_out(surrogate)) {
+        (true, true) => "of the share that is not unstable, by left-out modes",
+        (true, false) => "of the share that is not unstable, by left-out points",
+        (false, true) => "of the stable share, by left-out modes",
+        (false, false) => "of the stable share, by left-out points",
     }
+}
+
+/// 1 − x without the noise of its last digits.
+fn complement(share: f64) -> f64 {
+    const RESOLUTION: f64 = 1e15;
+    ((1.0 - share) * RESOLUTION).round() / RESOLUTION
 }
 
 fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
@@ -149,7 +171,7 @@ impl Confidence {
     /// What leaves how much open: names, values and words.
     pub(super) fn facts(&self, named: Named) -> Vec<(&'static str, String, String)> {
         let range = |interval: &Interval| match named {
-            Named::Unstable => share_range(1.0 - interval.upper, 1.0 - interval.lower),
+            Named::Unstable => share_range(complement(interval.upper), complement(interval.lower)),
             _ => share_range(interval.lower, interval.upper),
         };
         let Self { interval, surrogate_band, estimated_error_percent, verified_bound, basis } = self;
@@ -171,11 +193,12 @@ impl Confidence {
             None => ("surrogate band", "unknown".to_owned(), "no point could be left out".to_owned()),
         }));
         if let Some(error) = estimated_error_percent {
-            let words = match is_marginal {
-                true => "of the share that is not unstable".to_owned(),
-                false => error_words(basis.of_modes_left_out).to_owned(),
-            };
-            facts.push(("estimated error", format!("{} %", significant(*error, 2)), words));
+            // As a share of all cases, like the row that it belongs to.
+            let absolute = 0.01 * error * basis.not_unstable;
+            let is_rare = named == Named::Unstable && super::numbers::is_small(1.0 - basis.not_unstable);
+            let value = if is_rare { share(absolute) } else { format!("{} %", significant(100.0 * absolute, 2)) };
+            let by = if basis.of_modes_left_out { "by left-out modes alone" } else { "by left-out points" };
+            facts.push(("estimated error", format!("± {value}"), by.to_owned()));
         }
         facts.push(match verified_bound {
             None if basis.is_confined => ("verified bound", "none for a part of the domain".to_owned(), String::new()),

@@ -156,6 +156,8 @@ pub struct ModeReport {
     pub mode: usize,
     /// Im λ/2π, in Hz.
     pub frequency_hz: Statistics,
+    /// The same of the samples in which this mode oscillates and is unstable; null if there are none.
+    pub flutter_frequency_hz: Option<Statistics>,
     /// Re λ, in 1/s.
     pub growth_rate: Statistics,
     /// −Re λ/|λ|.
@@ -273,7 +275,9 @@ impl EvalReport {
             flutter: interval(Summary::fluttering),
             divergence: interval(|summary| summary.divergent),
         };
-        report.confidence = Confidence::new(surrogate, stable, summary.stable_if_shifted, share.interval);
+        let not_unstable = 1.0 - report.unstable_proportion;
+        report.confidence =
+            Confidence::new(surrogate, (stable, not_unstable), summary.stable_if_shifted, share.interval);
         report.confidence.basis.replicates = cell.replicates.len().max(1) as u64;
         if !is_whole {
             report.confidence.confine();
@@ -413,6 +417,7 @@ fn modes(labelled: &[(Label, &EigenvalueSummary)], samples: u64) -> Vec<ModeRepo
         Some(ModeReport {
             mode: label.mode()?,
             frequency_hz: Statistics::of(&summary.angular_frequency, 1.0 / TAU),
+            flutter_frequency_hz: summary.flutter_frequency.map(|moments| Statistics::of(&moments, 1.0 / TAU)),
             growth_rate: Statistics::of(&summary.growth_rate, 1.0),
             damping_ratio: Statistics::of(&summary.damping_ratio, 1.0),
             unstable_share: share(unstable),
@@ -463,7 +468,8 @@ fn unbalanced(question: &Question) -> Option<String> {
     }
     let nearest = per_replicate.checked_next_power_of_two()?.checked_mul(u64::from(question.replicates))?;
     Some(format!(
-        "replicates of {} Sobol' points are less balanced than those of a power of two; use -n {nearest}",
+        "replicates of {} Sobol' points are less balanced than those of a power of two, and their interval is somewhat too \
+         narrow; use -n {nearest}",
         count(per_replicate)
     ))
 }

@@ -9,7 +9,7 @@ use super::numbers::{interval, share, significant};
 use super::survey::{add_events, conditions_text, histogram_text, quantiles_table};
 use super::table::{Align, Table};
 use pcc_evaluate::evaluation::Sampler;
-use pcc_evaluate::foundation::count;
+use pcc_evaluate::foundation::{count, plural};
 use std::fmt;
 
 /// Modes without details, those that are unstable most often.
@@ -17,6 +17,11 @@ const MODES: usize = 6;
 
 /// Causes without details.
 const CAUSES: usize = 3;
+
+/// "1 sample", "1 000 samples".
+pub(super) fn samples(number: u64) -> String {
+    plural(number as usize, "sample")
+}
 
 /// How long samples took, or how many parts they come from.
 pub(super) fn pace(samples: f64, seconds: f64, merged_parts: Option<usize>) -> String {
@@ -108,9 +113,9 @@ impl fmt::Display for EvalReport {
             write!(f, "{critical:columns$}")?;
         }
         let how = pace(self.samples as f64, self.elapsed_seconds, self.only_in_text.merged_parts);
-        let all = if f.alternate() { "" } else { "; more: --details" };
-        let last = format!("{} samples of the {} {how}, seed {}{all}", count(self.samples), self.source, self.seed);
-        writeln!(f, "\n{}", wrapped(&last, columns, 0))
+        let last = format!("{} of the {} {how}, seed {}", samples(self.samples), self.source, self.seed);
+        writeln!(f, "\n{}", wrapped(&last, columns, 0))?;
+        if f.alternate() { Ok(()) } else { writeln!(f, "more: --details") }
     }
 }
 
@@ -152,7 +157,7 @@ impl EvalReport {
         let mut table = Table::new(&[
             ("mode", Align::Left),
             ("unstable", right),
-            ("frequency, Hz", right),
+            (if self.unstable_proportion > 0.0 { "flutters at, Hz" } else { "frequency, Hz" }, right),
             ("growth rate, 1/s", right),
             ("least damping", right),
         ]);
@@ -160,7 +165,11 @@ impl EvalReport {
             let cells = [
                 mode.mode.to_string(),
                 share(mode.unstable_share),
-                mode.frequency_hz.range(),
+                match mode.flutter_frequency_hz {
+                    Some(frequency) => frequency.range(),
+                    None if self.unstable_proportion > 0.0 => "–".to_owned(),
+                    None => mode.frequency_hz.range(),
+                },
                 mode.growth_rate.range(),
                 significant(mode.damping_ratio.minimum, 3),
             ];

@@ -2,7 +2,7 @@
 
 use super::build::{level_list, with_derivatives};
 use super::certify::CertificateReport;
-use super::confidence::{error_words, is_of_modes_left_out};
+use super::confidence::error_words;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
 use super::layout::{Facts, width, write_verdict, write_warnings};
@@ -87,9 +87,9 @@ pub struct InspectReport {
     pub plan: PlanReport,
     /// Estimated relative error of the stability proportion, in percent; null if unknown.
     pub estimated_error_percent: Option<f64>,
-    /// Whether that is the part of modes left out alone, because there was one design level.
+    /// What that is a share of, and where it is from.
     #[serde(skip)]
-    pub of_modes_left_out: bool,
+    pub error_words: &'static str,
     /// Largest relative difference between the self-test and this evaluator.
     pub self_test_difference: f64,
     /// Largest difference allowed.
@@ -170,7 +170,7 @@ impl InspectReport {
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
             estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
-            of_modes_left_out: is_of_modes_left_out(surrogate),
+            error_words: error_words(surrogate),
             self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
             certificates: CertificateReport::of(surrogate),
@@ -181,7 +181,7 @@ impl InspectReport {
 
     fn estimated_error(&self) -> String {
         match self.estimated_error_percent {
-            Some(error) => format!("{} % {}", significant(error, 2), error_words(self.of_modes_left_out)),
+            Some(error) => format!("{} % {}", significant(error, 2), self.error_words),
             None if self.components.iter().all(|fit| fit.s2.is_none()) => {
                 "not estimated, because no point was left out".to_owned()
             }

@@ -105,6 +105,11 @@ fn power_of_ten(mantissa: &str, exponent: i32) -> String {
     format!("{mantissa}·10{exponent}")
 }
 
+/// Whether a share is so small that it is written as a power of ten.
+pub(super) fn is_small(share: f64) -> bool {
+    share > 0.0 && share < SMALL
+}
+
 /// A share from 0 to 1.
 ///
 /// # Examples

@@ -86,15 +86,21 @@ impl SensitivityReport {
         order
     }
 
-    /// Their names and total indices.
-    pub(super) fn ranked(&self) -> Vec<(&str, f64)> {
-        self.order().into_iter().map(|j| (self.inputs[j].input.as_str(), self.total(j))).collect()
+    /// Their names and total indices of stability, if those are known well enough to tell one from another.
+    pub(super) fn ranked_for_stability(&self) -> Option<Vec<(&str, f64)>> {
+        let known = |j: usize| {
+            let total = self.inputs[j].stability?.total;
+            (total.half_width() <= VAGUE).then_some((self.inputs[j].input.as_str(), total.value))
+        };
+        self.order().into_iter().map(known).collect()
     }
 
     /// The inputs that decide most; `None` if nothing varies.
     pub(super) fn causes(&self, most: usize) -> Option<Table> {
         let right = Align::Right;
-        let mut table = Table::new(&[("what decides", Align::Left), ("alone", right), ("in all", right)]);
+        let is_of_stability = self.inputs.iter().all(|input| input.stability.is_some());
+        let head = if is_of_stability { "what decides" } else { "what max Re λ depends on" };
+        let mut table = Table::new(&[(head, Align::Left), ("alone", right), ("in all", right)]);
         for j in self.order().into_iter().take(most) {
             let pair = self.inputs[j].stability.or(self.inputs[j].max_re)?;
             table.row([self.inputs[j].input.clone(), cell(Some(pair.first)), cell(Some(pair.total))]);
@@ -103,11 +109,20 @@ impl SensitivityReport {
     }
 }
 
-/// An index with its interval.
+/// Indices with a wider interval say nothing.
+const VAGUE: f64 = 0.25;
+
+impl Bounded {
+    fn half_width(&self) -> f64 {
+        (self.value - self.lower).max(self.upper - self.value)
+    }
+}
+
+/// An index with its interval, if it says something.
 fn cell(value: Option<Bounded>) -> String {
-    value.map_or("–".to_owned(), |Bounded { value, lower, upper }| {
-        format!("{value:.3} ± {:.3}", (value - lower).max(upper - value))
-    })
+    value
+        .filter(|found| found.half_width() <= VAGUE)
+        .map_or("–".to_owned(), |found| format!("{:.3} ± {:.3}", found.value, found.half_width()))
 }
 
 impl fmt::Display for SensitivityReport {
@@ -273,14 +288,18 @@ impl CriticalReport {
 impl fmt::Display for CriticalReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = |value: Option<f64>| value.map_or("never".to_owned(), |value| significant(value, 4));
-        writeln!(f, "\ncritical {}: the smallest value at which the system is unstable", self.head)?;
         let columns = width(f);
+        let title = format!("critical {}: the smallest value at which the system is unstable", self.head);
+        writeln!(f, "\n{}", wrapped(&title, columns, 0))?;
         let mut facts = Facts::default();
         facts.add("stable throughout", share(self.never), "");
         facts.add("unstable from start", share(self.unstable_from_start), "");
         let (mean, minimum, maximum) = (value(self.mean), value(self.minimum), value(self.maximum));
         let start = if self.unstable_from_start > 0.0 { "; the lower bound for those unstable from start" } else { "" };
-        facts.add("critical values", format!("mean {mean}, {minimum} to {maximum}{start}"), "");
+        match self.mean {
+            Some(_) => facts.add("critical values", format!("mean {mean}, {minimum} to {maximum}{start}"), ""),
+            None => facts.add("critical values", "none", ""),
+        }
         writeln!(f, "{facts:columns$}")?;
         let mut heads = vec![("share unstable at or below", Align::Left)];
         let levels: Vec<String> = self.quantiles.iter().map(|q| super::numbers::level(q.level)).collect();

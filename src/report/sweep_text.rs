@@ -1,6 +1,6 @@
 //! A sweep as people read it: a table for one input, a map of characters for two.
 
-use super::eval_text::pace;
+use super::eval_text::{pace, samples};
 use super::layout::{Facts, width, wrapped, write_verdict, write_warnings};
 use super::numbers::{interval, plain, share, significant};
 use super::survey::conditions_text;
@@ -30,7 +30,7 @@ impl fmt::Display for SweepReport {
             _ => write!(f, "{:columns$}", self.table(columns))?,
         }
         let how = pace(self.samples as f64 * self.points.len() as f64, self.elapsed_seconds, self.merged_parts);
-        let last = format!("{} samples each of the surrogate {how}, seed {}", count(self.samples), self.seed);
+        let last = format!("{} each {how}, seed {}", samples(self.samples), self.seed);
         writeln!(f, "\n{}", wrapped(&last, columns, 0))?;
         match self.files.is_empty() {
             true => Ok(()),
@@ -42,15 +42,25 @@ impl fmt::Display for SweepReport {
 impl SweepReport {
     /// From where to where the share goes.
     pub(super) fn verdict_sentence(&self) -> String {
-        let shares = || self.points.iter().map(|point| point.stable_proportion);
+        let shares = || self.points.iter().map(|point| self.kept(point));
         let (least, most) = (shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max));
         let inputs: Vec<&str> = self.sweeps.iter().map(|sweep| sweep.input.as_str()).collect();
         let points = plural(self.points.len(), "point");
         let over = format!("{}: over {points} of {}", self.study, inputs.join(" and "));
         match self.points.is_empty() {
             true => format!("{over} nothing is known yet."),
-            false => format!("{over} between {} and {} of cases are stable.", share(least), share(most)),
+            false => format!("{over} between {} and {} of cases are {}.", share(least), share(most), self.kept_name()),
         }
+    }
+
+    /// The share of stable samples; of an undamped system, which has none, of those that are not unstable.
+    fn kept(&self, point: &SweepPoint) -> f64 {
+        let marginal = if self.has_marginal() { point.marginal_proportion } else { 0.0 };
+        point.stable_proportion + marginal
+    }
+
+    fn kept_name(&self) -> &'static str {
+        if self.has_marginal() { "stable or marginal" } else { "stable" }
     }
 
     fn facts(&self) -> Facts {
@@ -125,11 +135,11 @@ impl SweepReport {
         let width = (0..vertical.points as usize).map(|row| label(row).chars().count()).max().unwrap_or(0);
         let most_columns = available.saturating_sub(width + 3).clamp(1, MOST_COLUMNS) as u32;
         let (row_step, column_step) = (vertical.points.div_ceil(MOST_ROWS), horizontal.points.div_ceil(most_columns));
-        writeln!(f, "{:>width$}   stable: 0 to 9 tenths, · none, # all", self.head(vertical))?;
+        writeln!(f, "{:>width$}   {}: 0 to 9 tenths, · none, # all", self.head(vertical), self.kept_name())?;
         let rows = self.points.chunks(columns).enumerate().filter(|(row, _)| row.is_multiple_of(row_step as usize));
         for (row, points) in rows.collect::<Vec<_>>().into_iter().rev() {
             let shown = points.iter().step_by(column_step as usize);
-            let line: String = shown.map(|point| symbol(point, self.samples)).collect();
+            let line: String = shown.map(|point| symbol(self.kept(point))).collect();
             writeln!(f, "{:>width$}  |{line}", label(row))?;
         }
         let (from, to) = (plain(horizontal.from), plain(horizontal.to));
@@ -151,10 +161,10 @@ impl SweepReport {
     }
 }
 
-fn symbol(point: &SweepPoint, samples: u64) -> char {
-    match point.stable_samples {
-        0 => '·',
-        stable if stable == samples => '#',
-        _ => char::from_digit((10.0 * point.stable_proportion) as u32, 10).unwrap_or('9'),
+fn symbol(kept: f64) -> char {
+    match kept {
+        kept if kept <= 0.0 => '·',
+        kept if kept >= 1.0 => '#',
+        kept => char::from_digit((10.0 * kept) as u32, 10).unwrap_or('9'),
     }
 }

@@ -5,7 +5,7 @@ use super::judgement::MarginReport;
 use super::numbers::{plain, share, share_range, significant};
 use super::sensitivity::SensitivityReport;
 use super::survey::conditions_text;
-use pcc_evaluate::foundation::{count, plural};
+use pcc_evaluate::foundation::plural;
 
 /// Below this the smaller of stable and unstable is the one that is named.
 const RARE: f64 = 0.01;
@@ -51,27 +51,37 @@ impl EvalReport {
     fn shares(&self) -> String {
         let [stable, marginal, unstable] =
             [self.stable_proportion, self.marginal_proportion, self.unstable_proportion].map(share);
-        let is_unstable = match self.margin {
-            None => "unstable".to_owned(),
-            Some(MarginReport::GrowthRate(rate)) => format!("not stable by {} 1/s", plain(rate)),
-            Some(MarginReport::DampingRatio(ratio)) => format!("below the damping ratio {}", plain(ratio)),
+        let (is_unstable, is_never) = match self.margin {
+            None => ("is unstable".to_owned(), "is never unstable".to_owned()),
+            Some(margin) => {
+                let slow = match margin {
+                    MarginReport::GrowthRate(rate) => format!("decays more slowly than {} 1/s", plain(rate)),
+                    MarginReport::DampingRatio(ratio) => format!("has a damping ratio below {}", plain(ratio)),
+                };
+                (slow.clone(), format!("never {slow}"))
+            }
         };
         if self.undamped {
             let never = self.unstable_proportion == 0.0;
-            let unstable = if never { String::new() } else { format!(", {is_unstable} in {unstable}") };
+            let unstable = if never { String::new() } else { format!(", unstable in {unstable}") };
             return format!("is undamped: marginal in {marginal} of cases{unstable}");
         }
+        let samples = plural(self.samples as usize, "sample");
         if self.unstable_proportion == 0.0 && self.marginal_proportion == 0.0 {
             let most = share_range(0.0, self.intervals.unstable.upper);
-            return format!("is never {is_unstable} in {} samples ({most}, 95 %)", count(self.samples));
+            return format!("{is_never} in {samples} (unstable: {most}, 95 %)");
+        }
+        if self.unstable_proportion == 1.0 {
+            let most = share_range(0.0, self.intervals.stable.upper);
+            return format!("{is_unstable} in all of {samples} (stable: {most}, 95 %)");
         }
         let marginal = match self.marginal_proportion > 0.0 {
             true => format!(", marginal in {marginal}"),
             false => String::new(),
         };
         match self.stable_proportion < RARE && marginal.is_empty() {
-            true => format!("is {is_unstable} in all but {stable} of cases"),
-            false => format!("is {is_unstable} in {unstable} of cases{marginal}"),
+            true => format!("{is_unstable} in all but {stable} of cases"),
+            false => format!("{is_unstable} in {unstable} of cases{marginal}"),
         }
     }
 
@@ -88,7 +98,7 @@ impl EvalReport {
                 (false, false) if mode.flutter_share > WORTH_NAMING * mode.divergence_share => "diverges or flutters",
                 (false, false) => "diverges",
             },
-            frequency: (mode.flutter_share > 0.0).then_some(mode.frequency_hz.mean),
+            frequency: mode.flutter_frequency_hz.map(|frequency| frequency.mean),
         };
         let real = |real: &RealReport| Culprit {
             name: real.name.clone(),
@@ -106,10 +116,11 @@ impl EvalReport {
             None => format!("{name} {verb}"),
         };
         let mut texts: Vec<String> = named.iter().take(MOST_NAMED).map(text).collect();
-        match named.len().saturating_sub(MOST_NAMED) + others.len() {
-            0 => {}
-            1 => texts.push("another more rarely".to_owned()),
-            more => texts.push(format!("{} more rarely", plural(more, "other"))),
+        match (named.len().saturating_sub(MOST_NAMED), others.len()) {
+            (0, 0) => {}
+            (0, 1) => texts.push("another more rarely".to_owned()),
+            (0, rare) => texts.push(format!("{} more rarely", plural(rare, "other"))),
+            (as_often, rare) => texts.push(plural(as_often + rare, "other")),
         }
         Some(texts.join(", "))
     }
@@ -127,13 +138,14 @@ impl EvalReport {
     }
 }
 
-/// The inputs that decide stability: the first, and those that do about as much.
+/// The inputs that decide stability: the first, and those that do about as much. Nothing if that is not known.
 fn deciding_inputs(sensitivity: &SensitivityReport) -> Option<String> {
-    let ranked = sensitivity.ranked();
+    let ranked = sensitivity.ranked_for_stability()?;
     let first = ranked.first().filter(|(_, total)| *total > 0.0)?.1;
     let names: Vec<&str> =
-        ranked.iter().take(MOST_NAMED).filter(|(_, total)| *total >= AS_WELL * first).map(|(name, _)| *name).collect();
+        ranked.iter().filter(|(_, total)| *total >= AS_WELL * first).map(|(name, _)| *name).collect();
     Some(match names[..] {
+        ref many if many.len() > MOST_NAMED => format!("{} inputs decide about as much", many.len()),
         [only] => format!("{only} decides"),
         [ref before @ .., last] => format!("{} and {last} decide most", before.join(", ")),
         [] => return None,

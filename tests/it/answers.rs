@@ -1,7 +1,7 @@
 //! The answer comes first and fits a terminal, and shares near 0 and 1 keep their digits in every face.
 
 use crate::support::command::{output, pcc};
-use crate::support::repository;
+use crate::support::{in_one_line, repository};
 use std::fs;
 use std::path::Path;
 
@@ -126,7 +126,62 @@ fn table_and_chart(path: &Path) {
 fn what_never_happened_is_bounded() {
     let folder = rare();
     let text = output(folder.path(), &["eval", "rare.pcc", "-n", "1000"]);
-    assert!(text.starts_with("rare is never unstable in 1 000 samples (0 to 0."), "{text}");
+    assert!(text.starts_with("rare is never unstable in 1 000 samples (unstable: 0 to 0."), "{text}");
     let failed = pcc(folder.path(), &["eval", "rare.pcc", "-n", "0"]);
     assert_eq!(failed.status.code(), Some(2));
+}
+
+/// A study of this model and these inputs, built in a folder of its own.
+fn built(name: &str, model: &str, inputs: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let study = format!("format = 1\nname = \"{name}\"\n[model]\nkind = \"matrices\"\n{model}\n[inputs]\n{inputs}\n");
+    fs::write(folder.path().join(format!("{name}.toml")), study).unwrap();
+    output(folder.path(), &["build", &format!("{name}.toml")]);
+    folder
+}
+
+fn eval(folder: &Path, name: &str) -> serde_json::Value {
+    serde_json::from_str(&output(folder, &["eval", &format!("{name}.pcc"), "-n", "1e5", "--json"])).unwrap()
+}
+
+/// Mode 1 has the frequency k/2π and is unstable below k = 50: at 10 to 50 rad/s, 4.78 Hz on average.
+#[test]
+fn frequencies_are_those_at_which_modes_flutter() {
+    let input = "k = { distribution = \"uniform\", lower = 10.0, upper = 400.0 }";
+    let model =
+        "A = [[\"0.01*(50 - k)\", \"k\", 0, 0], [\"-k\", \"0.01*(50 - k)\", 0, 0], [0, 0, -1, 900], [0, 0, -900, -1]]";
+    let folder = built("trap", model, input);
+    let report = eval(folder.path(), "trap");
+    let verdict = report["verdict"].as_str().unwrap();
+    assert!(verdict.contains("flutters at about 4.7"), "{verdict}");
+    let frequency = &report["modes"][0]["flutter_frequency_hz"];
+    let largest = frequency["maximum"].as_f64().unwrap();
+    assert!((largest - 50.0 / std::f64::consts::TAU).abs() < 0.01, "{frequency}");
+    assert!(report["modes"][1]["flutter_frequency_hz"].is_null(), "mode 2 never flutters");
+}
+
+/// Where hardly a sample is unstable, nothing is known of what decides: no input is named.
+#[test]
+fn inputs_are_named_only_where_it_is_known_that_they_decide() {
+    let inputs = "a = { distribution = \"uniform\", lower = 0.0, upper = 10.0 }\nb = { distribution = \"uniform\", lower = 0.0, upper = 1.0 }";
+    let model = "A = [[\"-10.1 - a\", 10, 0, 0], [-10, \"-10.1 - a\", 0, 0], [0, 0, \"b - 0.99999\", 60], [0, 0, -60, \"b - 0.99999\"]]";
+    let rare = built("rare", model, inputs);
+    let report = eval(rare.path(), "rare");
+    let verdict = report["verdict"].as_str().unwrap();
+    assert!(!verdict.contains("decide") || verdict.contains("b decides"), "{verdict}");
+    let always = built("always", "A = [[\"1 + a\", 30], [-30, \"1 + a\"]]", inputs.lines().next().unwrap());
+    let report = eval(always.path(), "always");
+    let verdict = report["verdict"].as_str().unwrap();
+    assert!(verdict.starts_with("always is unstable in all of 100 000 samples (stable: 0 to "), "{verdict}");
+    assert!(!verdict.contains("decide"), "nothing does: {verdict}");
+}
+
+/// Marginal below k = 2, where two modes meet: a sweep shows where it is not unstable, as it is never stable.
+#[test]
+fn sweeps_of_undamped_systems_show_what_is_not_unstable() {
+    let inputs = "k = { distribution = \"uniform\", lower = 0.0, upper = 4.0 }";
+    let model = "M = [[1, 0], [0, 1]]\nK = [[100, \"k\"], [\"-k\", 104]]";
+    let folder = built("undamped", model, inputs);
+    let text = output(folder.path(), &["eval", "undamped.pcc", "-n", "1000", "--sweep", "k=0..4:9"]);
+    assert!(in_one_line(&text).contains("between 0 % and 100 % of cases are stable or marginal."), "{text}");
 }

@@ -572,3 +572,13 @@ fn failures_count_as_disagreement_both_ways_if_asked_for() {
     let checked = pcc(folder.path(), &["inspect", "program.pcc", "--check"]);
     assert_eq!(checked.status.code(), Some(1), "{}", stderr(&checked));
 }
+
+/// The build may skip runs that fail, so `run` ends with an answer, and counts them against the surrogate.
+#[test]
+fn a_program_that_fails_in_places_is_run_to_the_end() {
+    let folder = folder(&STUDY.replace("jobs = 8", "jobs = 8\non_failure = \"skip\"\nkeep = \"never\""));
+    let fails = "grep -q '\"mu\": *0\\.4[89]' params.json && exit 1\n";
+    fs::write(folder.path().join("before.sh"), fails).unwrap();
+    let said = output(folder.path(), &["run", "study.toml"]);
+    assert!(said.contains("── answer") && said.contains("did not answer"), "{said}");
+}

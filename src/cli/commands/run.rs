@@ -9,7 +9,7 @@ use crate::cli::{Context, Ending, about};
 use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table};
 use anyhow::Context as _;
 use clap::Args;
-use pcc_compile::campaign::Books;
+use pcc_compile::campaign::{Books, Campaign};
 use pcc_compile::mechanics::model::ModelError;
 use pcc_compile::mechanics::spectrum::Target;
 use pcc_compile::reference::compare_with_model;
@@ -138,7 +138,8 @@ fn build_and_compare(
     let build = BuildReport::of_file(&study, &built, path.display().to_string());
     let books = Books::after_build(&study, &recording, &path)?;
     books.notes.iter().for_each(|note| context.note(note));
-    let campaign = books.campaign(&study);
+    // Runs that the build may skip do not end the comparison either.
+    let campaign = Campaign { counts_failures: study.model.skips_failures(), ..books.campaign(&study) };
     let start = Instant::now();
     let comparison = compare_with_model(&built.surrogate, campaign, runs_or_default(None, &study), seed, &context.terminal)
         .map_err(|error| about(source, error))

@@ -23,6 +23,8 @@ pub struct EigenvalueSummary {
     pub real: u64,
     /// Samples in which it is real and unstable.
     pub divergent: u64,
+    /// Angular frequency Im λ, in rad/s, of the samples in which it is unstable and oscillates; absent without any.
+    pub flutter_frequency: Option<Moments>,
 }
 
 /// Damping ratio −Re λ/|λ|; 0 for λ = 0.
@@ -111,6 +113,11 @@ impl Summary {
                 marginal: count(&|lambda| excess(lambda) == 0.0),
                 real: count(&|lambda| lambda.im == 0.0),
                 divergent: count(&|lambda| lambda.im == 0.0 && excess(lambda) > 0.0),
+                flutter_frequency: {
+                    let flutters = lambdas.iter().filter(|lambda| lambda.im != 0.0 && excess(lambda) > 0.0);
+                    let frequencies: Vec<f64> = flutters.map(|lambda| lambda.im).collect();
+                    (!frequencies.is_empty()).then(|| Moments::of(&frequencies))
+                },
             }
         });
         let count = |holds: &dyn Fn(f64) -> bool| block.excess.iter().filter(|excess| holds(**excess)).count() as u64;
@@ -147,6 +154,10 @@ impl Merge for Summary {
             own.marginal += added.marginal;
             own.real += added.real;
             own.divergent += added.divergent;
+            match (&mut own.flutter_frequency, &added.flutter_frequency) {
+                (Some(own), Some(added)) => own.merge(added),
+                (own, added) => *own = own.or(*added),
+            }
         }
     }
 }

@@ -76,6 +76,7 @@ struct EigenvalueSums {
     growth_rate: Sums,
     angular_frequency: Sums,
     damping_ratio: Sums,
+    flutter_frequency: Sums,
     unstable: u64,
     marginal: u64,
     real: u64,
@@ -105,6 +106,7 @@ impl<'a> Gathering<'a> {
             growth_rate: Sums::NONE,
             angular_frequency: Sums::NONE,
             damping_ratio: Sums::NONE,
+            flutter_frequency: Sums::NONE,
             unstable: 0,
             marginal: 0,
             real: 0,
@@ -144,6 +146,10 @@ impl<'a> Gathering<'a> {
             marginal: sums.marginal,
             real: sums.real,
             divergent: sums.divergent,
+            flutter_frequency: match sums.unstable - sums.divergent {
+                0 => None,
+                count => Some(sums.flutter_frequency.moments(count)),
+            },
         };
         let summary = Summary {
             stable: self.stable,
@@ -202,7 +208,13 @@ impl WithSimd for Adding<'_, '_> {
             sums.damping_ratio.add(&damping_ratios(growth_rate, angular_frequency), lanes, is_first);
             let mut excess = excesses(growth_rate, angular_frequency, gathering.verdict.margin);
             excess.0.iter_mut().for_each(|excess| *excess = beyond_rounding(*excess, gathering.verdict.tolerance));
-            sums.unstable += count(&excess, lanes, |value| value > 0.0);
+            let unstable = count(&excess, lanes, |value| value > 0.0);
+            sums.unstable += unstable;
+            // Deviations are from what the frequency is about.
+            sums.flutter_frequency.shift = sums.angular_frequency.shift;
+            if unstable > 0 {
+                sums.flutter_frequency.add_fluttering(angular_frequency, &excess, lanes);
+            }
             sums.marginal += count(&excess, lanes, |value| value == 0.0);
             if gathering.has_reals {
                 sums.real += count(angular_frequency, lanes, |value| value == 0.0);
@@ -258,6 +270,22 @@ impl Sums {
         self.second[part] = deviation.mul_add(deviation, self.second[part]);
         self.minimum[part] = if value < self.minimum[part] { value } else { self.minimum[part] };
         self.maximum[part] = if value > self.maximum[part] { value } else { self.maximum[part] };
+    }
+
+    /// Adds those that oscillate and whose excess is positive.
+    #[inline(always)]
+    fn add_fluttering(&mut self, frequencies: &Lanes, excess: &Lanes, lanes: usize) {
+        let mut sums = *self;
+        for lane in 0..lanes {
+            let (value, part) = (frequencies.0[lane], lane % PARTS);
+            let flutters = (excess.0[lane] > 0.0) & (value != 0.0);
+            let deviation = if flutters { value - sums.shift } else { 0.0 };
+            sums.first[part] += deviation;
+            sums.second[part] = deviation.mul_add(deviation, sums.second[part]);
+            sums.minimum[part] = if flutters & (value < sums.minimum[part]) { value } else { sums.minimum[part] };
+            sums.maximum[part] = if flutters & (value > sums.maximum[part]) { value } else { sums.maximum[part] };
+        }
+        *self = sums;
     }
 
     fn moments(&self, count: u64) -> Moments {
