@@ -19,7 +19,7 @@ fn is_wanted(quiet: bool, json: bool, is_at_a_terminal: bool) -> bool {
 }
 
 fn step(command: &str, file: &Path, what_for: &str) -> String {
-    format!("next: pcc {command} {}   {what_for}", quoted(&file.display().to_string()))
+    format!("next, {what_for}:\n  pcc {command} {}", quoted(&file.display().to_string()))
 }
 
 /// A file name as a shell takes it.
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn hints_can_be_typed() {
-        assert_eq!(step("eval", Path::new("a b.pcc"), "to sample it"), "next: pcc eval 'a b.pcc'   to sample it");
+        assert_eq!(step("eval", Path::new("a b.pcc"), "to sample it"), "next, to sample it:\n  pcc eval 'a b.pcc'");
         assert_eq!(quoted("it's"), r"'it'\''s'");
         assert_eq!(quoted("runs/belt-1.pcc"), "runs/belt-1.pcc");
     }

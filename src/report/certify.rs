@@ -102,10 +102,10 @@ impl CertifyReport {
             }
         };
         format!(
-            "{}: {shares}, whatever the surrogate is worth ({}, from {} fresh model runs).",
+            "{}: {shares}, whatever the surrogate is worth ({}, from {}).",
             self.study,
             level(new.level),
-            count(new.samples)
+            plural(new.samples as usize, "fresh model run")
         )
     }
 

@@ -160,15 +160,15 @@ fn percentage(error: Option<f64>) -> String {
 
 impl CompareReport {
     fn verdict(&self) -> String {
-        let all = count(self.samples);
+        let all = plural(self.samples as usize, "point");
         let [model, surrogate] = [self.proportion_model, self.proportion_surrogate];
         let stable = match share(model) == share(surrogate) {
             true => format!("{} are stable", share(model)),
             false => format!("{} are stable by the model, {} by the surrogate", share(model), share(surrogate)),
         };
         let agreement = match self.misclassified_percent {
-            0.0 => format!("surrogate and model agree on all {all} points"),
-            percent => format!("surrogate and model disagree on {} of {all} points", share(percent / 100.0)),
+            0.0 => format!("surrogate and model agree on all of {all}"),
+            percent => format!("surrogate and model disagree on {} of {all}", share(percent / 100.0)),
         };
         format!("{}: {agreement}; {stable}.", self.study)
     }
@@ -231,8 +231,8 @@ impl fmt::Display for CompareReport {
         let all = if f.alternate() { "" } else { "; all components: --details" };
         writeln!(
             f,
-            "{} direct computations in {:.2} s, seed {}{all}",
-            count(self.samples),
+            "{} in {:.2} s, seed {}{all}",
+            plural(self.samples as usize, "direct computation"),
             self.elapsed_seconds,
             self.seed
         )

@@ -1,5 +1,6 @@
 //! The stability proportion along one input, or over two.
 
+use super::coverage::Bounds;
 use super::eval::QuantileReport;
 use super::judgement::judged_by;
 use super::survey::{EventReport, LEVEL, events};
@@ -85,6 +86,12 @@ pub struct SweepPoint {
     /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves
     /// open; null if unknown.
     pub surrogate_band: Option<Interval>,
+    /// Share of samples where the model did not answer, as far as its runs tell; absent if it answered everywhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unanswered_proportion: Option<f64>,
+    /// Between what the shares lie, whatever it would have answered there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bounds: Option<Bounds>,
     /// Other events that were counted.
     pub events: Vec<EventReport>,
 }
@@ -112,6 +119,8 @@ impl SweepReport {
                 standard_error: share.standard_error,
                 interval: share.interval,
                 surrogate_band: band(cell),
+                unanswered_proportion: found.unanswered_at.get(number).map(|unanswered| unanswered.proportion()),
+                bounds: found.unanswered_at.get(number).map(Bounds::of),
                 events: events(question, cell),
             }
         };

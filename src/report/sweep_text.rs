@@ -102,6 +102,8 @@ impl SweepReport {
         let mut columns: Vec<(&str, Align)> = swept.iter().map(|head| (head.as_str(), right)).collect();
         columns.extend([("stable", right), ("95 % interval", right)]);
         let has_marginal = self.has_marginal();
+        let has_unanswered = self.points.iter().any(|point| point.bounds.is_some());
+        columns.extend(has_unanswered.then_some(("whatever it would answer", right)));
         columns.extend(has_marginal.then_some(("marginal", right)));
         if self.can_diverge {
             columns.extend([("flutter", right), ("divergence", right)]);
@@ -112,6 +114,8 @@ impl SweepReport {
         for point in &self.points {
             let mut row: Vec<String> = point.values.iter().map(|&value| plain(value)).collect();
             row.extend([share(point.stable_proportion), interval(&point.interval)]);
+            let bounds = || point.bounds.map_or(String::new(), |bounds| interval(&bounds.stable));
+            row.extend(has_unanswered.then(bounds));
             row.extend(has_marginal.then(|| share(point.marginal_proportion)));
             if self.can_diverge {
                 row.extend([point.flutter_proportion, point.divergence_proportion].map(share));

@@ -129,7 +129,7 @@ impl EvalReport {
     fn unknown(&self) -> String {
         match (self.unanswered_proportion, self.bounds) {
             (Some(unanswered), Some(bounds)) => format!(
-                " The model did not answer in {}: {} are stable, whatever it would have answered.",
+                " The model did not answer in about {}, as far as its runs tell: {} are stable, whatever it would answer there.",
                 share(unanswered),
                 share_range(bounds.stable.lower, bounds.stable.upper)
             ),

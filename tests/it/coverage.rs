@@ -1,12 +1,12 @@
 //! Models that do not answer everywhere: what is not known reaches the file and every answer.
 
 use num_complex::Complex;
-use pcc::report::{EvalReport, FitReport};
+use pcc::report::{EvalReport, FitReport, SweepReport};
 use pcc_compile::compilation::build_with;
 use pcc_compile::mechanics::model::{Model, ModelError};
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::{Format, decode, encode};
-use pcc_evaluate::evaluation::{Condition, Question};
+use pcc_evaluate::evaluation::{Condition, Question, Sweep};
 use pcc_evaluate::foundation::{InstructionSet, Silent};
 use pcc_evaluate::session::Session;
 use pcc_evaluate::surrogate::Surrogate;
@@ -92,4 +92,19 @@ fn it_survives_in_both_forms_and_stays_outside_the_content_id() {
     let mut outside = surrogate;
     outside.coverage.as_mut().unwrap().unanswered[0][0] = 1.5;
     assert!(decode(&encode(&outside, Format::Binary).unwrap()).unwrap_err().to_string().contains("coverage"));
+}
+
+/// At a = 0.9 the model never answers, at a = 0.1 always.
+#[test]
+fn points_of_a_sweep_know_where_nothing_is_known() {
+    let surrogate = built(1);
+    let sweep = Sweep { input: "a".to_owned(), from: 0.1, to: 0.9, points: 2 };
+    let question = Question { sweeps: vec![sweep], ..Question::plain(10_000, 1) };
+    let session = Session::new(&surrogate, &question, None, InstructionSet::best()).unwrap();
+    let report = SweepReport::new(&session.run(&Silent).unwrap());
+    let [known, unknown] = &report.points[..] else { panic!("two points") };
+    assert!(known.unanswered_proportion == Some(0.0) && known.bounds.unwrap().stable.lower > 0.99);
+    let bounds = unknown.bounds.unwrap().stable;
+    assert!(unknown.unanswered_proportion == Some(1.0) && bounds.lower < 0.01 && bounds.upper > 0.99, "{bounds:?}");
+    assert!(report.to_string().contains("whatever it would answer"), "{report}");
 }

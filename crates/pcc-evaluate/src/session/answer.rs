@@ -17,6 +17,10 @@ const SENSITIVITY_SAMPLES: u64 = 16_384;
 /// Samples at which it is looked up whether the model would have answered: each is compared with all runs.
 const COVERAGE_SAMPLES: u64 = 100_000;
 
+/// Samples at all points of a sweep together, and at each of them at least: larger maps are not looked at.
+const COVERAGE_SAMPLES_OF_SWEEP: u64 = 1_000_000;
+const LEAST_COVERAGE_SAMPLES: u64 = 1_000;
+
 /// A surrogate, what was asked of it, and what it answers.
 #[derive(Debug, Clone)]
 pub struct Evaluation<'s> {
@@ -30,6 +34,9 @@ pub struct Evaluation<'s> {
     pub sensitivities: Option<Sensitivities>,
     /// What rests on answers, if the model did not answer everywhere; none of sweeps, and none after an interruption.
     pub unanswered: Option<Unanswered>,
+    /// The same at every point of a sweep; empty if the model answered everywhere, of very large sweeps, and after an
+    /// interruption.
+    pub unanswered_at: Vec<Unanswered>,
     /// The critical values of an input, by its number, if asked for.
     pub critical: Option<(usize, CriticalValues)>,
     /// Whether this is all that was asked for; false after an interruption.
@@ -112,12 +119,23 @@ impl<'s> Session<'s> {
             is_complete: answer.is_complete,
             sensitivities: None,
             unanswered: None,
+            unanswered_at: Vec::new(),
             critical: None,
             merged_parts: None,
             elapsed_seconds,
             answer,
         };
         if !question.sweeps.is_empty() {
+            let coverage = surrogate.coverage.as_ref().filter(|_| evaluation.is_complete);
+            let regions = survey.regions();
+            let each = COVERAGE_SAMPLES_OF_SWEEP / regions.count().max(1);
+            if let Some(coverage) = coverage.filter(|_| each >= LEAST_COVERAGE_SAMPLES) {
+                let samples = (question.samples.min(each).min(COVERAGE_SAMPLES), question.seed);
+                let at = |cell: u64| unanswered_in(surrogate, coverage, &regions.at(cell as usize), samples, observer);
+                let found = in_time((0..regions.count()).map(at).collect())?;
+                evaluation.is_complete = found.is_some();
+                evaluation.unanswered_at = found.unwrap_or_default();
+            }
             return Ok(evaluation);
         }
         if evaluation.answer.cells.is_empty() {
