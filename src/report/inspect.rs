@@ -11,7 +11,6 @@ use super::table::{Align, Table};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
 use pcc_evaluate::foundation::{count, plural};
-use pcc_evaluate::probability::inputs::Marginal;
 use pcc_evaluate::surrogate::{Setting, SettingValue};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -110,10 +109,12 @@ pub struct InputReport {
     pub unit: Option<String>,
     /// Distribution.
     pub distribution: &'static str,
-    /// Lower bound.
-    pub lower: f64,
-    /// Upper bound.
-    pub upper: f64,
+    /// Its parameters.
+    pub parameters: BTreeMap<String, f64>,
+    /// Lower bound; null if there is none.
+    pub lower: Option<f64>,
+    /// Upper bound; null if there is none.
+    pub upper: Option<f64>,
     /// Polynomial family.
     pub family: &'static str,
 }
@@ -216,14 +217,16 @@ fn setting(setting: &Setting) -> (String, serde_json::Value) {
 }
 
 fn input(input: &pcc_evaluate::probability::inputs::Input) -> InputReport {
-    let Marginal::Uniform(uniform) = input.marginal;
+    let [lower, upper] = input.marginal.support().map(|end| end.is_finite().then_some(end));
+    let parameter = |(name, value): (&'static str, f64)| (name.to_owned(), value);
     InputReport {
         name: input.name.clone(),
         label: input.description.label().map(str::to_owned),
         unit: input.description.unit().map(str::to_owned),
-        distribution: "uniform",
-        lower: uniform.lower(),
-        upper: uniform.upper(),
+        distribution: input.marginal.name(),
+        parameters: input.marginal.parameters().into_iter().map(parameter).collect(),
+        lower,
+        upper,
         family: input.marginal.family().name(),
     }
 }
@@ -304,20 +307,49 @@ impl InspectReport {
     pub(super) fn input_table(&self) -> Table {
         let right = Align::Right;
         let left = Align::Left;
-        let mut columns = vec![("input", left), ("distribution", left), ("lower", right), ("upper", right)];
+        let mut columns = vec![("input", left), ("distribution", left)];
+        // Bounds say all of uniform inputs, and little of others.
+        let has_bounds_alone = self.inputs.iter().all(|input| input.distribution == "uniform");
+        match has_bounds_alone {
+            true => columns.extend([("lower", right), ("upper", right)]),
+            false => columns.push(("parameters", left)),
+        }
         let has_units = self.inputs.iter().any(|input| input.unit.is_some());
         columns.extend(has_units.then_some(("unit", left)));
         columns.push(("polynomials", left));
         columns.extend(self.inputs.iter().any(|input| input.label.is_some()).then_some(("label", left)));
         let mut inputs = Table::new(&columns);
         for input in &self.inputs {
-            let (lower, upper) = (significant(input.lower, 6), significant(input.upper, 6));
-            let mut row = vec![input.name.as_str(), input.distribution, &lower, &upper];
+            let parameters = match has_bounds_alone {
+                true => {
+                    [input.lower, input.upper].map(|end| end.map_or_else(String::new, |end| significant(end, 6))).into()
+                }
+                false => vec![input.parameters_in_words()],
+            };
+            let mut row = vec![input.name.as_str(), input.distribution];
+            row.extend(parameters.iter().map(String::as_str));
             row.extend(has_units.then(|| input.unit.as_deref().unwrap_or_default()));
             row.extend([input.family, input.label.as_deref().unwrap_or_default()]);
             row.truncate(columns.len());
             inputs.row(row);
         }
         inputs
+    }
+}
+
+impl InputReport {
+    /// Like "mean 2e6, std 1e5".
+    fn parameters_in_words(&self) -> String {
+        let one = |(name, value): (&String, &f64)| format!("{name} {}", shortest(*value));
+        self.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Up to six digits, without zeros at the end.
+fn shortest(value: f64) -> String {
+    let rounded = significant(value, 6);
+    match rounded.contains('.') && !rounded.contains('·') {
+        true => rounded.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => rounded,
     }
 }

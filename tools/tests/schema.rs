@@ -87,7 +87,7 @@ fn studies_satisfy_the_schema_and_unknown_keys_do_not() {
             }
         }
         let mut wrong = study.clone();
-        wrong["inputs"].as_object_mut().unwrap().values_mut().for_each(|input| input["mean"] = 1.into());
+        wrong["inputs"].as_object_mut().unwrap().values_mut().for_each(|input| input["surprise"] = 1.into());
         assert!(!validator.is_valid(&wrong), "{name}: an unknown key of an input");
     }
 }

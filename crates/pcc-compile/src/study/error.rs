@@ -131,6 +131,17 @@ pub enum StudyError {
         /// Where.
         place: Place,
     },
+    /// Elements along an input that is not bounded.
+    #[error(
+        "{place}: elements divide bounded inputs only, and a {law} law has a tail; use a uniform or log-uniform law, or \
+         another fit.method"
+    )]
+    ElementsOfUnbounded {
+        /// Where.
+        place: Place,
+        /// The input's law.
+        law: &'static str,
+    },
     /// Derivatives of a model that has none.
     #[error("{place}: programs and tables answer eigenvalues alone, so there are no derivatives; remove the key")]
     NoDerivatives {

@@ -8,6 +8,7 @@ use crate::fitting::fit::method::Value;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;
 use pcc_evaluate::foundation::{sha256, sha256_bytes};
+use pcc_evaluate::probability::inputs::Marginal;
 
 pub(super) fn problem_hash(study: &Study) -> String {
     sha256(problem(study).as_bytes())
@@ -51,8 +52,10 @@ fn problem(study: &Study) -> String {
     let mut text = identity(&study.model, &study.inputs);
     for input in study.inputs.inputs() {
         let _ = write!(text, "input {} {}", input.name, input.marginal.name());
-        for (_, value) in input.marginal.parameters() {
-            let _ = write!(text, " {value:?}");
+        // Uniform inputs were alone once; other laws can have the same numbers of different names.
+        let is_uniform = matches!(input.marginal, Marginal::Uniform(_));
+        for (name, value) in input.marginal.parameters() {
+            let _ = if is_uniform { write!(text, " {value:?}") } else { write!(text, " {name} {value:?}") };
         }
         text.push('\n');
     }

@@ -116,6 +116,13 @@ pub(super) struct Input {
     pub upper: Option<f64>,
     pub nominal: Option<f64>,
     pub spread: Option<Spanned<Relative>>,
+    pub mean: Option<f64>,
+    pub std: Option<f64>,
+    pub cv: Option<Spanned<Relative>>,
+    pub median: Option<f64>,
+    pub shape: Option<f64>,
+    pub scale: Option<f64>,
+    pub location: Option<f64>,
     pub unit: Option<Spanned<String>>,
     pub label: Option<Spanned<String>>,
 }

@@ -16,6 +16,16 @@ impl Lines<'_> {
         Err(self.no_relative(&key, raw, "above 0 and below 1; 0.1, or \"10%\", is 10 % up and down"))
     }
 
+    /// A standard deviation relative to its mean.
+    pub(super) fn variation(&self, input: &str, raw: &Spanned<raw::Relative>) -> Result<f64, StudyError> {
+        let key = format!("{input}.cv");
+        let cv = self.relative(&key, raw)?;
+        if cv > 0.0 && cv.is_finite() {
+            return Ok(cv);
+        }
+        Err(self.no_relative(&key, raw, "above 0; 0.05, or \"5%\", is a standard deviation of 5 % of the mean"))
+    }
+
     /// A relative quantity as a number: `0.1`, or `"10%"`.
     fn relative(&self, key: &str, raw: &Spanned<raw::Relative>) -> Result<f64, StudyError> {
         match raw.get_ref() {

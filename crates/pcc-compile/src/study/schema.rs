@@ -217,27 +217,71 @@ enum Entry {
     Expression(String),
 }
 
-/// An uncertain parameter: lower and upper, or nominal and spread.
+/// An uncertain parameter: a law, its parameters, and how the input is shown.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct Input {
     /// How its values are distributed.
     distribution: Distribution,
-    /// Lowest value.
+    /// Lowest value. Of: uniform, log-uniform; normal, which it cuts off.
     lower: Option<f64>,
-    /// Highest value.
+    /// Highest value. Of: uniform, log-uniform; normal, which it cuts off.
     upper: Option<f64>,
-    /// Value in the middle.
+    /// Value in the middle. Of: uniform, with `spread`; normal and lognormal, with `cv`: the mean.
     nominal: Option<f64>,
-    /// Half the range, as a fraction of `nominal`: 0.05 means from 0.95 to 1.05 times nominal.
-    spread: Option<f64>,
+    /// Half the range, relative to `nominal`: 0.05, or "5%", means from 0.95 to 1.05 times nominal. Of: uniform.
+    spread: Option<Relative>,
+    /// Mean; of a normal law before it is cut off. Of: normal, lognormal, exponential, gumbel.
+    mean: Option<f64>,
+    /// Standard deviation; of a normal law before it is cut off. Of: normal, lognormal, gumbel.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    std: Option<f64>,
+    /// Standard deviation relative to the mean: 0.05, or "5%". Of: normal, lognormal.
+    cv: Option<Relative>,
+    /// Value that half of all values are below. Of: lognormal, with `cv`.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    median: Option<f64>,
+    /// Exponent of the law. Of: weibull.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    shape: Option<f64>,
+    /// Width of the law. Of: weibull, gumbel.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    scale: Option<f64>,
+    /// Most frequent value. Of: gumbel.
+    location: Option<f64>,
+    /// Unit of its values, shown beside them.
+    unit: Option<String>,
+    /// What it is, shown beside its name.
+    label: Option<String>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum Relative {
+    /// A number like 0.05.
+    Number(f64),
+    /// A text in percent like "5%".
+    Percent(String),
 }
 
 #[derive(JsonSchema)]
 #[schemars(rename_all = "kebab-case")]
 enum Distribution {
-    /// All values of the range are equally likely.
+    /// All values of the range are equally likely: lower and upper, or nominal and spread.
     Uniform,
+    /// Normal: mean and std, mean and cv, or nominal and cv. With lower or upper or both it is cut off there.
+    Normal,
+    /// The logarithm is normal: mean and std, mean and cv, or median and cv, of the variable itself.
+    #[schemars(rename = "lognormal")]
+    LogNormal,
+    /// The logarithm is uniform: lower and upper.
+    LogUniform,
+    /// Exponential, from 0: mean.
+    Exponential,
+    /// Weibull, from 0: shape and scale.
+    Weibull,
+    /// Gumbel, of largest values: location and scale, or mean and std.
+    Gumbel,
 }
 
 /// What of the spectrum is expanded, and what stable means.

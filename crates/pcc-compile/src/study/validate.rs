@@ -9,10 +9,11 @@ use super::error::{Place, StudyError};
 use super::model::Kind;
 use super::settings::{DesignKind, DesignSettings, FitSettings, SpectrumSettings};
 use super::{STUDY_FORMAT, Study, defaults, raw};
+use crate::fitting::fit::FitMethod;
 use crate::mechanics::model::Parameter;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::{Margin, is_result_column};
-use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
+use pcc_evaluate::probability::inputs::{Germ, Input, InputSpace, Marginal, MarginalError, Parameters};
 
 /// Design sizes above this need more memory for the regression than a workstation has.
 const LARGEST_DESIGN: i64 = 1_000_000;
@@ -46,6 +47,8 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
         None => defaults::SEED,
     };
     let kind = lines.kind(&raw.model.kind)?;
+    let places: Vec<Place> =
+        raw.inputs.get_ref().0.iter().map(|(key, raw)| lines.place(format!("inputs.{key}"), raw)).collect();
     let inputs = lines.inputs(raw.inputs, kind)?;
     let dimension = inputs.dimension();
     let spectrum = lines.spectrum(raw.spectrum, kind)?;
@@ -54,6 +57,12 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     let fit = lines.fit(raw.fit, spectrum.target, dimension, &model)?;
     if let Some(place) = failure_place.filter(|_| fit.method.is_quadrature() && model.skips_failures()) {
         return Err(StudyError::SkippingOfQuadrature { place });
+    }
+    if let FitMethod::MultiElement(_) = fit.method
+        && let Some(at) = inputs.inputs().iter().position(|input| input.marginal.germ() != Germ::Uniform)
+    {
+        let law = inputs.inputs()[at].marginal.name();
+        return Err(StudyError::ElementsOfUnbounded { place: places[at].clone(), law });
     }
     let derivatives = fit.use_derivatives(spectrum.target, &model);
     let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
@@ -189,21 +198,41 @@ impl Lines<'_> {
     ) -> Result<Marginal, StudyError> {
         let key = format!("inputs.{name}");
         let input = raw.get_ref();
-        self.word(&format!("{key}.distribution"), &input.distribution, &[("uniform", ())])?;
+        let laws: Vec<(&str, ())> = Marginal::names().map(|name| (name, ())).collect();
+        self.word(&format!("{key}.distribution"), &input.distribution, &laws)?;
         let place = self.place(&key, raw);
         let spread = input.spread.as_ref().map(|spread| self.spread(&key, spread)).transpose()?;
-        let (lower, upper) = match (input.lower, input.upper, input.nominal, spread) {
-            (Some(lower), Some(upper), None, None) => (lower, upper),
-            (None, None, Some(nominal), Some(spread)) => (nominal * (1.0 - spread), nominal * (1.0 + spread)),
-            _ => return Err(StudyError::DistributionForm { place }),
-        };
-        let uniform =
-            Uniform::new(lower, upper).map_err(|cause| StudyError::Distribution { place: place.clone(), cause })?;
-        if let Some(parameter) = parameter.filter(|p| !(p.range.contains(lower) && p.range.contains(upper))) {
-            let expected = format!("{} over the whole interval", parameter.range.describe());
+        let cv = input.cv.as_ref().map(|cv| self.variation(&key, cv)).transpose()?;
+        let given = [
+            ("lower", input.lower),
+            ("upper", input.upper),
+            ("nominal", input.nominal),
+            ("spread", spread),
+            ("mean", input.mean),
+            ("std", input.std),
+            ("cv", cv),
+            ("median", input.median),
+            ("shape", input.shape),
+            ("scale", input.scale),
+            ("location", input.location),
+        ];
+        let given = Parameters::of(given.into_iter().filter_map(|(name, value)| Some((name, value?))));
+        let marginal = Marginal::named(input.distribution.get_ref(), &given).map_err(|cause| match cause {
+            MarginalError::Form { law: "uniform", .. } => StudyError::DistributionForm { place: place.clone() },
+            cause => StudyError::Distribution { place: place.clone(), cause },
+        })?;
+        let [lower, upper] = marginal.support();
+        if let Some(parameter) = parameter.filter(|p| !p.range.holds_nearly_all_of(&marginal)) {
+            let expected = match lower.is_finite() && upper.is_finite() {
+                true => format!("{} over the whole interval", parameter.range.describe()),
+                false => {
+                    let range = parameter.range.describe();
+                    format!("{range} but for a billionth of all values; cut the law off with lower, or choose another")
+                }
+            };
             return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });
         }
-        Ok(Marginal::Uniform(uniform))
+        Ok(marginal)
     }
 
     fn spectrum(&self, raw: raw::Spectrum, kind: Kind) -> Result<SpectrumSettings, StudyError> {

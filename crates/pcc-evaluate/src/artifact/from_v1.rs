@@ -4,8 +4,8 @@ use super::error::ReadError;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
 use super::{descriptions, v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
-use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
-use crate::probability::inputs::{Input, InputSpace, Marginal, Uniform};
+use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh, MultiIndex, Split};
+use crate::probability::inputs::{Germ, Input, InputSpace, Marginal, Parameters, Uniform};
 use crate::surrogate::{
     Band, Certificate, Counts, Coverage, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest,
     Setting, SettingValue, StopReason, Surrogate, Training, VerdictBasis,
@@ -33,7 +33,10 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
     let expansions = expansions(document.expansions, inputs.dimension(), mesh.elements().len(), components)?;
     check_recurrences(&document.inputs, &expansions)?;
     let self_test = self_test(document.self_test, &inputs, components)?;
-    let coverage = coverage(document.coverage, inputs.dimension())?;
+    let coverage = coverage(document.coverage, &inputs)?;
+    let divides_unbounded =
+        mesh.elements().len() > 1 && inputs.inputs().iter().any(|input| input.marginal.germ() != Germ::Uniform);
+    ensure("elements", !divides_unbounded, || "only bounded standardized variables have elements".to_owned())?;
     Ok(Surrogate {
         provenance,
         coverage,
@@ -66,20 +69,40 @@ fn inputs(section: &v1::Inputs) -> Result<InputSpace, ReadError> {
     let v1::Dependence::Independent = section.dependence;
     let mut inputs = Vec::with_capacity(section.inputs.len());
     for input in &section.inputs {
-        let v1::Distribution::Uniform { lower, upper } = input.distribution;
         let meaning =
             |message: String| ReadError::Meaning { section: "inputs", message: format!("{}: {message}", input.name) };
-        let uniform = Uniform::new(lower, upper).map_err(|error| meaning(error.to_string()))?;
-        let v1::Transform::Affine { center, half_width } = input.transform;
-        let transform_fits = close(center, uniform.center(), uniform.half_width())
-            && close(half_width, uniform.half_width(), uniform.half_width());
+        let marginal = marginal(&input.distribution).map_err(meaning)?;
+        let transform_fits = match (&input.transform, &marginal) {
+            (v1::Transform::Affine { center, half_width }, Marginal::Uniform(law)) => {
+                close(*center, law.center(), law.half_width()) && close(*half_width, law.half_width(), law.half_width())
+            }
+            (v1::Transform::OfLaw, law) => !matches!(law, Marginal::Uniform(_)),
+            _ => false,
+        };
+        let [lower, upper] = marginal.support();
         let bounds_fit = input.bounds.as_ref().is_none_or(|b| b.lower == lower && b.upper == upper);
         if !(transform_fits && bounds_fit && !input.name.is_empty() && is_printable(&input.name)) {
             return Err(meaning("name, transform or bounds do not fit the distribution".to_owned()));
         }
-        inputs.push(Input::new(input.name.clone(), Marginal::Uniform(uniform)));
+        inputs.push(Input::new(input.name.clone(), marginal));
     }
     InputSpace::new(inputs).map_err(|error| ReadError::Meaning { section: "inputs", message: error.to_string() })
+}
+
+fn marginal(distribution: &v1::Distribution) -> Result<Marginal, String> {
+    match distribution {
+        v1::Distribution::Uniform { lower, upper } => {
+            Uniform::new(*lower, *upper).map(Marginal::Uniform).map_err(|error| error.to_string())
+        }
+        v1::Distribution::Law { name, parameters } => {
+            let known = Parameters::of(parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.value)));
+            let found = Marginal::named(name, &known).map_err(|error| error.to_string())?;
+            // Said in the way that is written, and in no other.
+            let is_same = found.parameters().into_iter().eq(parameters.iter().map(|p| (p.name.as_str(), p.value)));
+            let is_law = !matches!(found, Marginal::Uniform(_)) && is_same;
+            if is_law { Ok(found) } else { Err("the parameters are not those of its law".to_owned()) }
+        }
+    }
 }
 
 fn close(found: f64, expected: f64, scale: f64) -> bool {
@@ -91,8 +114,19 @@ fn check_recurrences(section: &v1::Inputs, expansions: &[Expansion]) -> Result<(
     for (j, input) in section.inputs.iter().enumerate() {
         let used = expansions.iter().flat_map(|expansion| expansion.indices.iter().map(move |alpha| alpha[j])).max();
         let degree = input.recurrence.off_diagonal.len();
-        let v1::Family::Legendre = input.family;
-        let known = crate::polynomials::Family::Legendre.recurrence(degree.min(usize::from(HIGHEST_DEGREE)));
+        let family = marginal(&input.distribution).ok().map(|marginal| marginal.family()).filter(|family| {
+            matches!(
+                (family, &input.family),
+                (Family::Legendre, v1::Family::Legendre)
+                    | (Family::Hermite, v1::Family::Hermite)
+                    | (Family::TruncatedNormal { .. }, v1::Family::TruncatedNormal)
+            )
+        });
+        let Some(family) = family else {
+            let message = format!("{}: the family is not that of its law", input.name);
+            return Err(ReadError::Meaning { section: "inputs", message });
+        };
+        let known = family.recurrence(degree.min(usize::from(HIGHEST_DEGREE)));
         let agrees = |found: &[f64], expected: &[f64]| {
             found.len() == expected.len() && found.iter().zip(expected).all(|(&a, &b)| close(a, b, 1.0))
         };
@@ -328,12 +362,14 @@ fn verdict(stored: Option<v2::Verdict>) -> Result<VerdictBasis, ReadError> {
     Ok(verdict)
 }
 
-fn coverage(stored: Option<v2::Coverage>, inputs: usize) -> Result<Option<Coverage>, ReadError> {
+fn coverage(stored: Option<v2::Coverage>, inputs: &InputSpace) -> Result<Option<Coverage>, ReadError> {
     let Some(v2::Coverage { answered, unanswered }) = stored else { return Ok(None) };
-    let is_point = |point: &Vec<f64>| point.len() == inputs && point.iter().all(|coordinate| coordinate.abs() <= 1.0);
+    let is_inside = |(input, xi): (&Input, &f64)| input.marginal.germ() != Germ::Uniform || xi.abs() <= 1.0;
+    let dimension = inputs.dimension();
+    let is_point = |point: &Vec<f64>| point.len() == dimension && inputs.inputs().iter().zip(point).all(is_inside);
     let is_shaped = [&answered, &unanswered].into_iter().all(|runs| !runs.is_empty() && runs.iter().all(is_point));
     ensure("coverage", is_shaped, || {
-        format!("it needs runs of both kinds, with {inputs} coordinates in [-1, 1] each")
+        format!("it needs runs of both kinds, with {dimension} coordinates inside the domain each")
     })?;
     Ok(Some(Coverage { answered, unanswered }))
 }

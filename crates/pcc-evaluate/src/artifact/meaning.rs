@@ -31,9 +31,13 @@ pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
 }
 
 fn input(input: &v1::Input) -> Vec<f64> {
-    let v1::Distribution::Uniform { lower, upper } = input.distribution;
-    let v1::Transform::Affine { center, half_width } = input.transform;
-    let mut numbers = vec![lower, upper, center, half_width];
+    let mut numbers = match &input.distribution {
+        v1::Distribution::Uniform { lower, upper } => vec![*lower, *upper],
+        v1::Distribution::Law { parameters, .. } => parameters.iter().map(|parameter| parameter.value).collect(),
+    };
+    if let v1::Transform::Affine { center, half_width } = input.transform {
+        numbers.extend([center, half_width]);
+    }
     numbers.extend(&input.recurrence.diagonal);
     numbers.extend(&input.recurrence.off_diagonal);
     numbers.extend(bounds(&input.bounds));

@@ -59,23 +59,40 @@ fn inputs(surrogate: &Surrogate) -> v1::Inputs {
         }
     }
     let input = |(input, degree): (&crate::probability::inputs::Input, u16)| {
-        let Marginal::Uniform(uniform) = &input.marginal;
-        let (lower, upper) = (uniform.lower(), uniform.upper());
         let family = input.marginal.family();
         let recurrence = family.recurrence(usize::from(degree));
         v1::Input {
             name: input.name.clone(),
-            distribution: v1::Distribution::Uniform { lower, upper },
-            transform: v1::Transform::Affine { center: uniform.center(), half_width: uniform.half_width() },
+            distribution: distribution(&input.marginal),
+            transform: match &input.marginal {
+                Marginal::Uniform(law) => v1::Transform::Affine { center: law.center(), half_width: law.half_width() },
+                _ => v1::Transform::OfLaw,
+            },
             family: match family {
                 Family::Legendre => v1::Family::Legendre,
+                Family::Hermite => v1::Family::Hermite,
+                Family::TruncatedNormal { .. } => v1::Family::TruncatedNormal,
             },
             recurrence: v1::Recurrence { diagonal: recurrence.diagonal, off_diagonal: recurrence.off_diagonal },
-            bounds: Some(v1::Bounds { lower, upper }),
+            bounds: match input.marginal.support() {
+                [lower, upper] if lower.is_finite() && upper.is_finite() => Some(v1::Bounds { lower, upper }),
+                _ => None,
+            },
         }
     };
     let inputs = surrogate.inputs.inputs().iter().zip(degrees).map(input).collect();
     v1::Inputs { inputs, dependence: v1::Dependence::Independent }
+}
+
+fn distribution(marginal: &Marginal) -> v1::Distribution {
+    match marginal {
+        Marginal::Uniform(law) => v1::Distribution::Uniform { lower: law.lower(), upper: law.upper() },
+        other => {
+            let parameter = |(name, value): (&str, f64)| v1::Parameter { name: name.to_owned(), value };
+            let parameters = other.parameters().into_iter().map(parameter).collect();
+            v1::Distribution::Law { name: other.name().to_owned(), parameters }
+        }
+    }
 }
 
 /// In version 1 of the section, if that can say it.

@@ -117,6 +117,24 @@ pub enum Distribution {
         /// Upper bound.
         upper: f64,
     },
+    /// A law by its name and parameters (since minor version 3).
+    Law {
+        /// Its name in study files.
+        name: String,
+        /// Its parameters, with their names in study files.
+        parameters: Vec<Parameter>,
+    },
+}
+
+/// A parameter of a law.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// Its name in study files.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
 }
 
 /// Map from the physical to the standardized variable.
@@ -131,6 +149,9 @@ pub enum Transform {
         /// Physical distance from ξ = 0 to ξ = 1.
         half_width: f64,
     },
+    /// x(ξ) that gives x its law where ξ is uniform on [−1, 1] or standard normal, as the family says (since minor
+    /// version 3).
+    OfLaw,
 }
 
 /// Family of orthonormal polynomials.
@@ -140,6 +161,10 @@ pub enum Transform {
 pub enum Family {
     /// Orthonormal under the uniform density on [−1, 1].
     Legendre,
+    /// Orthonormal under the standard normal density (since minor version 3).
+    Hermite,
+    /// Orthonormal under the density of a normal law between bounds, which the recurrence says (since minor version 3).
+    TruncatedNormal,
 }
 
 /// φ_0 = 1, b_{k+1} φ_{k+1} = (ξ − a_k) φ_k − b_k φ_{k−1}.

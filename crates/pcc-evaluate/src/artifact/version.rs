@@ -1,6 +1,7 @@
 //! Versions of the surrogate file and what this code can do with them.
 
 use crate::components::OutputKind;
+use crate::probability::inputs::{Input, Marginal};
 use crate::surrogate::{Expansion, StopReason, Surrogate, VerdictBasis};
 use std::cmp::Ordering;
 
@@ -16,7 +17,8 @@ pub const MAJOR: u16 = 1;
 /// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
 ///   the search for an expansion ended that full expansions have.
 /// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10; section 9 in
-///   version 2, with bounds of all shares; a search that ended because errors no longer fell; sections 11 and 12.
+///   version 2, with bounds of all shares; a search that ended because errors no longer fell; sections 11 and 12; laws
+///   other than the uniform one in section 2.
 pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
@@ -32,7 +34,9 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     let has_stalled = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
     let has_verdict = surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default();
     let has_more_sections = surrogate.coverage.is_some() || surrogate.inputs.has_descriptions();
-    match has_verdict || bounds_all || has_stalled || has_more_sections {
+    let is_uniform = |input: &Input| matches!(input.marginal, Marginal::Uniform(_));
+    let has_laws = !surrogate.inputs.inputs().iter().all(is_uniform);
+    match has_laws || has_verdict || bounds_all || has_stalled || has_more_sections {
         true => 3,
         false if needs_2 => 2,
         false => u16::from(has_clusters),

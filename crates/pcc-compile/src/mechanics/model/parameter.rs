@@ -1,5 +1,7 @@
 //! Named parameters of a model.
 
+use pcc_evaluate::probability::inputs::Marginal;
+
 /// Which values make physical sense.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Range {
@@ -17,6 +19,16 @@ impl Range {
             Self::NonNegative => 0.0,
         };
         (smallest..=LARGEST).contains(&value)
+    }
+
+    /// Whether a law gives such values: all of an interval, of others all but a billionth on either side.
+    pub fn holds_nearly_all_of(self, marginal: &Marginal) -> bool {
+        const ALMOST_ALL: f64 = 1.0 - 2e-9;
+        let ends = match marginal {
+            Marginal::Uniform(law) => [law.lower(), law.upper()],
+            _ => [-ALMOST_ALL, ALMOST_ALL].map(|centred| marginal.at_centred_probability(centred)),
+        };
+        ends.into_iter().all(|end| self.contains(end))
     }
 
     /// The range in words, to follow "must be".

@@ -28,7 +28,7 @@ use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::Evaluator;
 use crate::evaluation::questions::region::Region;
 use crate::foundation::Observer;
-use crate::probability::inputs::{Marginal, Uniform};
+use crate::probability::inputs::Marginal;
 use crate::probability::random::{Purpose, Stream};
 use crate::probability::statistics::Moments;
 use crate::surrogate::Surrogate;
@@ -52,7 +52,7 @@ pub struct CriticalValues {
     pub never: u64,
     /// Samples that are unstable at the lower bound already: it is their critical value.
     pub unstable_from_start: u64,
-    domain: Uniform,
+    domain: Marginal,
     /// Critical values above the lower bound, per bin.
     counts: Vec<u64>,
     /// All critical values, as shares of the domain's width above the lower bound.
@@ -63,7 +63,7 @@ pub struct CriticalValues {
 }
 
 impl CriticalValues {
-    fn new(samples: u64, domain: Uniform, labels: Vec<Label>) -> Self {
+    fn new(samples: u64, domain: Marginal, labels: Vec<Label>) -> Self {
         Self {
             samples,
             never: 0,
@@ -129,10 +129,13 @@ impl CriticalValues {
     }
 }
 
-/// The value of an input at this share of its domain.
-pub(super) fn physical(domain: Uniform, share: f64) -> f64 {
-    let (lower, upper) = (domain.lower(), domain.upper());
-    (lower + share * (upper - lower)).clamp(lower, upper)
+/// The value of an input at this share of its domain: of its interval, or of what is probable where it is not uniform.
+pub(super) fn physical(domain: Marginal, share: f64) -> f64 {
+    let [lower, upper] = domain.support();
+    match domain {
+        Marginal::Uniform(_) => (lower + share * (upper - lower)).clamp(lower, upper),
+        _ => domain.at_centred_probability(domain.germ().reach() * (2.0 * share - 1.0)),
+    }
 }
 
 /// The bin of a share of the domain's width.
@@ -185,7 +188,7 @@ pub fn critical_values(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<CriticalValues, EvalError> {
-    critical_values_in(surrogate, &Region::whole(surrogate.inputs.dimension()), input, samples, seed, observer)
+    critical_values_in(surrogate, &Region::whole(&surrogate.inputs), input, samples, seed, observer)
 }
 
 /// The same with the other inputs confined to `region`; `input` itself is looked for in all of its domain.
@@ -203,7 +206,7 @@ pub fn critical_values_in(
 ) -> Result<CriticalValues, EvalError> {
     let inputs = surrogate.inputs.inputs();
     let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
-    let Marginal::Uniform(domain) = chosen.marginal;
+    let domain = chosen.marginal;
     let plan = Plan::new(surrogate);
     let mut values = CriticalValues::new(samples, domain, surrogate.labels());
     in_chunks(
@@ -363,9 +366,10 @@ impl Search<'_> {
     /// What decides at samples of the chunk with the input's standardized value set to that of the trial.
     fn evaluate(&mut self, trials: &[(usize, f64)]) -> Result<Vec<Point>, EvalError> {
         let (points, input) = (&self.points, self.input);
+        let germ = self.surrogate.inputs.inputs()[input].marginal.germ();
         let set_point = |(sample, xi): (usize, f64), point: &mut [f64]| {
             point.copy_from_slice(&points[sample * point.len()..(sample + 1) * point.len()]);
-            point[input] = xi;
+            point[input] = germ.at(germ.reach() * xi);
         };
         let mut found = Vec::with_capacity(trials.len());
         self.evaluator.deciding(trials.len(), |number, point| set_point(trials[number], point), &mut found);

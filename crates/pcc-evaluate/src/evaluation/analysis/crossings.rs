@@ -5,7 +5,7 @@
 
 use super::critical::{BINS, bin_of, physical, quantile_in_bins};
 use crate::components::{Label, Verdict};
-use crate::probability::inputs::Uniform;
+use crate::probability::inputs::Marginal;
 use crate::probability::statistics::Moments;
 use std::collections::BTreeMap;
 
@@ -56,7 +56,7 @@ pub struct Crossing {
     /// Smallest and largest.
     pub range: [f64; 2],
     values: Values,
-    domain: Uniform,
+    domain: Marginal,
 }
 
 impl Crossings {
@@ -78,7 +78,7 @@ impl Crossings {
     }
 
     /// All of them, in the order of crossings, of equal ones the most frequent first.
-    pub(super) fn list(&self, labels: &[Label], domain: Uniform) -> Vec<Crossing> {
+    pub(super) fn list(&self, labels: &[Label], domain: Marginal) -> Vec<Crossing> {
         let crossing = |(key, values): (&CrossingKey, &Values)| Crossing {
             order: key.order,
             loses: key.loses,

@@ -116,7 +116,7 @@ pub fn sensitivities(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Sensitivities, EvalError> {
-    sensitivities_in(surrogate, &Region::whole(surrogate.inputs.dimension()), samples, seed, observer)
+    sensitivities_in(surrogate, &Region::whole(&surrogate.inputs), samples, seed, observer)
 }
 
 /// The same for inputs confined to `region`. Inputs that are fixed there have no influence.

@@ -3,26 +3,31 @@
 use super::question::Question;
 use super::survey_error::SurveyError;
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
-use crate::probability::inputs::InputSpace;
+use crate::probability::inputs::{Germ, InputSpace};
 
 /// Replicates of all points of all sweeps together, at most: their counts are kept in memory, some 500 bytes each.
 const MOST_SERIES: u64 = 1 << 18;
 
-/// A box in the standardized domain: every input is confined to an interval, or fixed.
+/// A part of the domain: every input is confined to an interval, or fixed. Intervals are of the centred probability
+/// η = 2F − 1 of each input: an input that is confined has its own law on condition that it lies there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// ξ = lower + width · u for u uniform on (0, 1), per input.
+    /// η = lower + width · u for u uniform on (0, 1), per input.
     lower: Vec<f64>,
     width: Vec<f64>,
+    /// What standardized variables are distributed like.
+    germs: Vec<Germ>,
 }
 
 impl Region {
     /// The whole domain.
-    pub fn whole(dimension: usize) -> Self {
-        Self { lower: vec![-1.0; dimension], width: vec![2.0; dimension] }
+    pub fn whole(inputs: &InputSpace) -> Self {
+        let dimension = inputs.dimension();
+        let germs = inputs.inputs().iter().map(|input| input.marginal.germ()).collect();
+        Self { lower: vec![-1.0; dimension], width: vec![2.0; dimension], germs }
     }
 
-    /// Confines an input to this interval of its standardized variable; equal ends fix it.
+    /// Confines an input to this interval of its centred probability; equal ends fix it.
     ///
     /// # Panics
     ///
@@ -39,14 +44,14 @@ impl Region {
 
     /// Whether nothing is confined.
     pub fn is_whole(&self) -> bool {
-        *self == Self::whole(self.lower.len())
+        self.lower.iter().all(|&lower| lower == -1.0) && self.width.iter().all(|&width| width == 2.0)
     }
 
-    /// The standardized coordinate at a place u ∈ (0, 1) inside the interval of an input. In the whole domain 2u − 1
-    /// without rounding.
+    /// The standardized coordinate at a place u ∈ (0, 1) inside the interval of an input. In the whole domain η is
+    /// 2u − 1 without rounding.
     #[inline(always)]
     pub fn place(&self, input: usize, unit: f64) -> f64 {
-        self.width[input].mul_add(unit, self.lower[input])
+        self.germs[input].at(self.width[input].mul_add(unit, self.lower[input]))
     }
 
     /// [`Self::place`] in all lanes.
@@ -56,6 +61,19 @@ impl Region {
         for lane in 0..BLOCK_POINTS {
             units.0[lane] = width.mul_add(units.0[lane], lower);
         }
+        match self.germs[input] {
+            Germ::Uniform => {}
+            Germ::Normal => {
+                for lane in 0..BLOCK_POINTS {
+                    units.0[lane] = Germ::Normal.at(units.0[lane]);
+                }
+            }
+            Germ::TruncatedNormal(cut) => {
+                for lane in 0..BLOCK_POINTS {
+                    units.0[lane] = Germ::TruncatedNormal(cut).at(units.0[lane]);
+                }
+            }
+        }
     }
 }
 
@@ -63,7 +81,7 @@ impl Region {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Regions {
     base: Region,
-    /// Swept inputs with their standardized values.
+    /// Swept inputs with the centred probabilities of their values.
     swept: Vec<(usize, Vec<f64>)>,
 }
 
@@ -84,7 +102,7 @@ impl Regions {
             used.push(found);
             Ok(found)
         };
-        let mut base = Region::whole(inputs.dimension());
+        let mut base = Region::whole(inputs);
         for condition in &question.conditions {
             let input = position(&condition.input)?;
             let lower = coordinate(inputs, input, condition.lower)?;
@@ -122,20 +140,23 @@ impl Regions {
     pub fn at(&self, number: usize) -> Region {
         let (mut region, mut rest) = (self.base.clone(), number);
         for (input, values) in self.swept.iter().rev() {
-            let xi = values[rest % values.len()];
-            region.confine(*input, xi, xi);
+            let centred = values[rest % values.len()];
+            region.confine(*input, centred, centred);
             rest /= values.len();
         }
         region
     }
 }
 
-/// The standardized coordinate of a value inside the domain.
+/// The centred probability of a value inside the domain.
 fn coordinate(inputs: &InputSpace, input: usize, value: f64) -> Result<f64, SurveyError> {
     let chosen = &inputs.inputs()[input];
     if !chosen.marginal.contains(value) {
-        let (lower, upper) = (chosen.marginal.physical(-1.0), chosen.marginal.physical(1.0));
+        let [lower, upper] = chosen.marginal.support();
         return Err(SurveyError::Outside { input: chosen.name.clone(), value, lower, upper });
     }
-    Ok(chosen.marginal.standardized(value).clamp(-1.0, 1.0))
+    // No farther out than random values come.
+    const OUTERMOST: f64 = 1.0 - f64::EPSILON / 2.0;
+    let most = if chosen.marginal.germ() == Germ::Uniform { 1.0 } else { OUTERMOST };
+    Ok(chosen.marginal.centred_probability(value).clamp(-most, most))
 }

@@ -1,5 +1,10 @@
-//! The distribution of one input and its map to the standardized variable of its polynomial family.
+//! The law of one input, whichever it is, and its map to the standardized variable of its polynomial family.
 
+use super::extremes::{Exponential, Gumbel, Weibull};
+use super::germ::Germ;
+use super::law::Law;
+use super::log_uniform::LogUniform;
+use super::normal::{LogNormal, Normal, TruncatedNormal};
 use super::uniform::Uniform;
 use crate::polynomials::Family;
 
@@ -12,78 +17,143 @@ const BOUNDARY: f64 = 1e-9;
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::probability::inputs::{Marginal, Uniform};
+/// use pcc_evaluate::probability::inputs::{Marginal, Normal, Uniform};
 /// let friction = Marginal::Uniform(Uniform::new(0.0, 0.5)?);
 /// assert_eq!(friction.physical(0.5), 0.375);
 /// assert_eq!(friction.standardized(0.375), 0.5);
+/// let stiffness = Marginal::Normal(Normal::new(2e6, 1e5)?);
+/// assert_eq!(stiffness.physical(2.0), 2.2e6);
 /// # Ok::<(), pcc_evaluate::probability::inputs::MarginalError>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Marginal {
     /// Uniform on an interval; the standardized variable is ξ = (x − centre)/half width ∈ [−1, 1].
     Uniform(Uniform),
+    /// Normal; ξ = (x − mean)/std.
+    Normal(Normal),
+    /// Its logarithm is normal.
+    LogNormal(LogNormal),
+    /// Normal between bounds.
+    TruncatedNormal(TruncatedNormal),
+    /// Its logarithm is uniform.
+    LogUniform(LogUniform),
+    /// Exponential.
+    Exponential(Exponential),
+    /// Weibull.
+    Weibull(Weibull),
+    /// Gumbel, of largest values.
+    Gumbel(Gumbel),
 }
 
 impl Marginal {
+    fn law(&self) -> &dyn Law {
+        match self {
+            Self::Uniform(law) => law,
+            Self::Normal(law) => law,
+            Self::LogNormal(law) => law,
+            Self::TruncatedNormal(law) => law,
+            Self::LogUniform(law) => law,
+            Self::Exponential(law) => law,
+            Self::Weibull(law) => law,
+            Self::Gumbel(law) => law,
+        }
+    }
+
     /// Name of the law in study files and tables.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Uniform(_) => "uniform",
+            Self::Normal(_) | Self::TruncatedNormal(_) => "normal",
+            Self::LogNormal(_) => "lognormal",
+            Self::LogUniform(_) => "log-uniform",
+            Self::Exponential(_) => "exponential",
+            Self::Weibull(_) => "weibull",
+            Self::Gumbel(_) => "gumbel",
         }
     }
 
     /// The parameters that say which one of its laws it is, with their names in study files, in the order of these
     /// files.
     pub fn parameters(&self) -> Vec<(&'static str, f64)> {
+        self.law().parameters()
+    }
+
+    /// The law of its standardized variable.
+    #[inline]
+    pub fn germ(&self) -> Germ {
         match self {
-            Self::Uniform(uniform) => vec![("lower", uniform.lower()), ("upper", uniform.upper())],
+            Self::Uniform(_) => Germ::Uniform,
+            other => other.law().germ(),
         }
     }
 
     /// The polynomial family that is orthonormal in the standardized variable.
     pub fn family(&self) -> Family {
-        match self {
-            Self::Uniform(_) => Family::Legendre,
-        }
+        self.germ().family()
     }
 
     /// The standardized value ξ whose probability to be undercut is `unit` ∈ (0, 1).
     #[inline]
     pub fn standardized_quantile(&self, unit: f64) -> f64 {
-        match self {
-            Self::Uniform(_) => 2.0 * unit - 1.0,
-        }
+        self.germ().at(2.0 * unit - 1.0)
     }
 
     /// The physical value at the standardized value ξ.
     #[inline]
     pub fn physical(&self, standardized: f64) -> f64 {
         match self {
-            Self::Uniform(uniform) => uniform.center() + uniform.half_width() * standardized,
+            Self::Uniform(uniform) => uniform.physical(standardized),
+            other => other.law().physical(standardized),
         }
     }
 
     /// dx/dξ, the derivative of the physical value x by the standardized one: what the chain rule needs.
     #[inline]
     pub fn slope(&self, standardized: f64) -> f64 {
-        let _ = standardized;
-        match self {
-            Self::Uniform(uniform) => uniform.half_width(),
-        }
+        self.law().slope(standardized)
     }
 
     /// The standardized value ξ at a physical value.
     #[inline]
     pub fn standardized(&self, physical: f64) -> f64 {
         match self {
-            Self::Uniform(uniform) => (physical - uniform.center()) / uniform.half_width(),
+            Self::Uniform(uniform) => uniform.standardized(physical),
+            other => other.law().standardized(physical),
         }
+    }
+
+    /// η = 2F(x) − 1 ∈ [−1, 1] at a physical value, F being its distribution function: random values are uniform in it.
+    pub fn centred_probability(&self, physical: f64) -> f64 {
+        self.germ().centred_probability(self.standardized(physical))
+    }
+
+    /// The physical value where 2F(x) − 1 is η ∈ (−1, 1).
+    pub fn at_centred_probability(&self, centred: f64) -> f64 {
+        self.physical(self.germ().at(centred))
+    }
+
+    /// The interval that has all probability; infinite where it has no bound.
+    pub fn support(&self) -> [f64; 2] {
+        self.law().support()
+    }
+
+    /// Between what values a million random ones lie, about: the support where it is bounded.
+    pub fn range(&self) -> [f64; 2] {
+        const REACH: f64 = 1.0 - 1e-6;
+        let [lower, upper] = self.support();
+        let finite = |end: f64, centred: f64| if end.is_finite() { end } else { self.at_centred_probability(centred) };
+        [finite(lower, -REACH), finite(upper, REACH)]
     }
 
     /// Whether `physical` lies in the support.
     pub fn contains(&self, physical: f64) -> bool {
+        let [lower, upper] = self.support();
         match self {
-            Self::Uniform(_) => self.standardized(physical).abs() <= 1.0 + 2.0 * BOUNDARY,
+            Self::Uniform(uniform) => uniform.standardized(physical).abs() <= 1.0 + 2.0 * BOUNDARY,
+            _ => {
+                let slack = |end: f64| if end.is_finite() { BOUNDARY * end.abs() } else { 0.0 };
+                physical.is_finite() && physical >= lower - slack(lower) && physical <= upper + slack(upper)
+            }
         }
     }
 }
@@ -104,6 +174,78 @@ mod tests {
             prop_assert!(marginal.contains(marginal.physical(xi)));
             let chord = marginal.physical(0.5) - marginal.physical(-0.5);
             prop_assert!((marginal.slope(xi) - chord).abs() <= 4.0 * f64::EPSILON * (lower.abs() + 2.0 * width));
+        }
+    }
+
+    /// One of each.
+    fn laws() -> Vec<Marginal> {
+        let normal = Normal::new(2.0, 0.5).unwrap();
+        let truncated = |lower, upper| Marginal::TruncatedNormal(TruncatedNormal::new(normal, lower, upper).unwrap());
+        vec![
+            Marginal::Uniform(Uniform::new(-1.0, 3.0).unwrap()),
+            Marginal::Normal(normal),
+            Marginal::LogNormal(LogNormal::new(2.0, 0.5).unwrap()),
+            truncated(Some(1.5), Some(2.6)),
+            truncated(Some(0.0), None),
+            truncated(None, Some(2.1)),
+            truncated(Some(1.0), Some(3.9)),
+            Marginal::LogUniform(LogUniform::new(0.1, 10.0).unwrap()),
+            Marginal::Exponential(Exponential::new(3.0).unwrap()),
+            Marginal::Weibull(Weibull::new(1.5, 2.0).unwrap()),
+            Marginal::Gumbel(Gumbel::with_moments(1.0, 0.2).unwrap()),
+        ]
+    }
+
+    #[test]
+    fn standardizing_undoes_every_law_and_slopes_are_its_derivatives() {
+        for law in laws() {
+            let [lower, upper] = law.support();
+            for k in -49..50 {
+                let centred = f64::from(k) / 50.0;
+                let xi = law.germ().at(centred);
+                let x = law.physical(xi);
+                assert!(lower <= x && x <= upper && law.contains(x), "{law:?}: {x}");
+                assert!((law.standardized(x) - xi).abs() < 1e-10, "{law:?} at {xi}: {}", law.standardized(x));
+                assert!((law.centred_probability(x) - centred).abs() < 1e-12, "{law:?}");
+                let step = 1e-5;
+                let chord = (law.physical(xi + step) - law.physical(xi - step)) / (2.0 * step);
+                let slope = law.slope(xi);
+                assert!(
+                    slope > 0.0 && (slope - chord).abs() < 2e-6 * slope.max(1e-3),
+                    "{law:?} at {xi}: {slope} {chord}"
+                );
+            }
+        }
+    }
+
+    /// Moments by the midpoint rule in probability.
+    #[test]
+    fn laws_have_the_moments_that_they_are_given_by() {
+        let moments = |law: &Marginal| {
+            let values: Vec<f64> =
+                (0..200_000).map(|k| law.at_centred_probability((f64::from(k) + 0.5) / 100_000.0 - 1.0)).collect();
+            let mean = values.iter().sum::<f64>() / values.len() as f64;
+            (mean, (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt())
+        };
+        for law in [
+            Marginal::Normal(Normal::new(2.0, 0.5).unwrap()),
+            Marginal::LogNormal(LogNormal::new(2.0, 0.5).unwrap()),
+            Marginal::Gumbel(Gumbel::with_moments(2.0, 0.5).unwrap()),
+        ] {
+            let (mean, std) = moments(&law);
+            assert!((mean - 2.0).abs() < 1e-4 && (std - 0.5).abs() < 1e-3, "{law:?}: {mean} {std}");
+        }
+        let (mean, _) = moments(&Marginal::Exponential(Exponential::new(3.0).unwrap()));
+        assert!((mean - 3.0).abs() < 1e-3, "{mean}");
+    }
+
+    #[test]
+    fn ends_of_supports_are_finite_standardized_values() {
+        for law in laws() {
+            for end in law.support().into_iter().filter(|end| end.is_finite()) {
+                let xi = law.standardized(end);
+                assert!(xi.is_finite() || matches!(law, Marginal::LogNormal(_)), "{law:?} at {end}: {xi}");
+            }
         }
     }
 

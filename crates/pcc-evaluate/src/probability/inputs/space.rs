@@ -149,7 +149,7 @@ impl InputSpace {
     pub fn check(&self, physical: &[f64]) -> Result<(), InputError> {
         for (input, &value) in self.0.iter().zip(physical) {
             if !input.marginal.contains(value) {
-                let (lower, upper) = (input.marginal.physical(-1.0), input.marginal.physical(1.0));
+                let [lower, upper] = input.marginal.support();
                 return Err(InputError::Outside { name: input.name.clone(), value, lower, upper });
             }
         }

@@ -1,5 +1,7 @@
 //! The uniform law.
 
+use super::germ::Germ;
+use super::law::Law;
 use thiserror::Error;
 
 /// Why a distribution's parameters are unusable.
@@ -28,6 +30,44 @@ pub enum MarginalError {
         lower: f64,
         /// Upper bound found.
         upper: f64,
+    },
+    /// A parameter is not what it has to be.
+    #[error("{name} is {value}, but must be {expected}")]
+    Parameter {
+        /// Its name in study files.
+        name: &'static str,
+        /// What was found.
+        value: f64,
+        /// What it has to be.
+        expected: &'static str,
+    },
+    /// There is no such law.
+    #[error("{found:?} is not known; choose one of {known}")]
+    Unknown {
+        /// Its name.
+        found: String,
+        /// Names of those there are.
+        known: String,
+    },
+    /// A law has other parameters.
+    #[error("a {law} law has {expected}")]
+    Form {
+        /// Its name.
+        law: &'static str,
+        /// What its parameters can be.
+        expected: &'static str,
+    },
+    /// A coefficient of variation of nothing.
+    #[error("cv = {cv} is a share of the mean, but the mean is 0; give std instead")]
+    NoScatter {
+        /// The coefficient.
+        cv: f64,
+    },
+    /// The bounds of a truncated law leave next to nothing.
+    #[error("the bounds leave {share:e} of the probability; move them or the mean")]
+    NothingLeft {
+        /// What is left.
+        share: f64,
     },
 }
 
@@ -77,6 +117,34 @@ impl Uniform {
     /// Half the length of the interval.
     pub fn half_width(&self) -> f64 {
         0.5 * (self.upper - self.lower)
+    }
+}
+
+impl Law for Uniform {
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        vec![("lower", self.lower), ("upper", self.upper)]
+    }
+
+    fn germ(&self) -> Germ {
+        Germ::Uniform
+    }
+
+    #[inline]
+    fn physical(&self, xi: f64) -> f64 {
+        self.center() + self.half_width() * xi
+    }
+
+    fn slope(&self, _: f64) -> f64 {
+        self.half_width()
+    }
+
+    #[inline]
+    fn standardized(&self, x: f64) -> f64 {
+        (x - self.center()) / self.half_width()
+    }
+
+    fn support(&self) -> [f64; 2] {
+        [self.lower, self.upper]
     }
 }
 

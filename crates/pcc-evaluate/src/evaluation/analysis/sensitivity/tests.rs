@@ -199,7 +199,7 @@ fn a_is_the_point_of_plain_sampling_and_b_is_another() {
     let space = inputs(&[(-1.0, 1.0), (0.0, 5.0), (-1.0, 1.0)]);
     let (mut pair, mut point) = ([0.0; 6], [0.0; 3]);
     for index in [0, 1, 1 << 40] {
-        draw(&Region::whole(space.dimension()), 9, index, &mut pair);
+        draw(&Region::whole(&space), 9, index, &mut pair);
         random_point(&space, 9, Purpose::Evaluation, index, &mut point);
         assert_eq!(pair[..3], point);
         assert!(pair[..3].iter().zip(&pair[3..]).all(|(a, b)| a != b));
