@@ -24,6 +24,7 @@ mod help;
 mod invariants;
 mod judgement;
 mod kills;
+mod laws;
 mod layers;
 mod matrices;
 mod openturns;

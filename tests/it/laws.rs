@@ -1,0 +1,234 @@
+//! Inputs of other laws than the uniform one: shares with a closed form, the clutch, files, and what is refused.
+
+use crate::support::command::{output, refusal};
+use crate::support::{build, in_one_line, invariants_study, text};
+use pcc_compile::reference::compare_with_model;
+use pcc_compile::study::Study;
+use pcc_evaluate::foundation::Silent;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// An oscillator with λ = (Σ inputs − 1.1) ± ≈10i.
+fn oscillator(inputs: &[(&str, &str)], threshold: f64, rest: &str) -> String {
+    let names: Vec<&str> = inputs.iter().map(|(name, _)| *name).collect();
+    let laws: String = inputs.iter().map(|(name, law)| format!("{name} = {{ distribution = {law} }}\n")).collect();
+    format!(
+        "format = 1\nname = \"oscillator\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nC = [[\"2 * ({threshold:?} - {})\"]]\n\
+         K = [[100]]\n[inputs]\n{laws}{rest}",
+        names.join(" - ")
+    )
+}
+
+fn folder_with(study: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("study.toml"), study).unwrap();
+    folder
+}
+
+fn built_from(study: &str) -> TempDir {
+    let folder = folder_with(study);
+    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
+    folder
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
+}
+
+#[track_caller]
+fn number(report: &Value, pointer: &str) -> f64 {
+    report.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} of {report}"))
+}
+
+/// A law, c, F(c), an interval, and F(c) on condition that the input lies there; from the distribution functions, by
+/// Python.
+const SHARES: [(&str, f64, f64, [f64; 2], f64); 8] = [
+    ("\"normal\", mean = 1.0, std = 0.2", 1.1, 0.6914624612740132, [0.8, 1.3], 0.6879036541480422),
+    ("\"lognormal\", mean = 1.0, cv = \"25%\"", 1.1, 0.6950453214839031, [0.8, 1.3], 0.7181909160424771),
+    ("\"log-uniform\", lower = 0.2, upper = 2.0", 0.7, 0.5440680443502756, [0.4, 1.5], 0.4233881712547671),
+    ("\"exponential\", mean = 0.5", 0.8, 0.7981034820053446, [0.3, 1.2], 0.7573016854880691),
+    ("\"weibull\", shape = 1.5, scale = 1.0", 1.1, 0.6845293830353467, [0.5, 1.6], 0.6784003040507642),
+    ("\"gumbel\", location = 1.0, scale = 0.2", 1.2, 0.6922006275553463, [0.8, 1.5], 0.7322362921334442),
+    ("\"normal\", mean = 1.0, std = 0.5, lower = 0.0", 1.2, 0.6474000461349728, [0.6, 1.8], 0.6048533169157017),
+    (
+        "\"normal\", mean = 1.0, std = 0.5, lower = 0.5, upper = 1.4",
+        1.2,
+        0.7891578938761771,
+        [0.6, 1.3],
+        0.8631517686616555,
+    ),
+];
+
+#[test]
+fn shares_are_those_of_the_distribution_functions() {
+    for (law, threshold, expected, [from, to], expected_inside) in SHARES {
+        let folder = built_from(&oscillator(&[("x", law)], threshold, ""));
+        let eval = ["eval", "built.pcc", "-n", "1000000"];
+        let whole = number(&json(folder.path(), &eval), "/stable_proportion");
+        let inside = format!("x={from}..{to}");
+        let part = number(&json(folder.path(), &[&eval[..], &["--where", &inside]].concat()), "/stable_proportion");
+        println!("{law}: {whole} for {expected}, {part} for {expected_inside}");
+        for (found, expected) in [(whole, expected), (part, expected_inside)] {
+            let error = (expected * (1.0 - expected) / 1e6).sqrt();
+            assert!((found - expected).abs() < 4.5 * error, "{law}: {found} for {expected}");
+        }
+        // The input decides alone, so that all samples lose stability there.
+        let critical = json(folder.path(), &["eval", "built.pcc", "-n", "1000", "--critical", "x"]);
+        for end in ["minimum", "maximum"] {
+            let value = number(&critical, &format!("/critical/{end}"));
+            assert!((value - threshold).abs() < 0.002 * threshold, "{law}: critical {value}");
+        }
+        let fixed = |at: f64| {
+            let condition = format!("x={at}");
+            let eval = ["eval", "built.pcc", "-n", "100", "--where", &condition];
+            number(&json(folder.path(), &eval), "/stable_proportion")
+        };
+        assert_eq!((fixed(0.98 * threshold), fixed(1.02 * threshold)), (1.0, 0.0), "{law}");
+    }
+}
+
+/// The critical value of x is 1.1 − y.
+#[test]
+fn critical_values_have_the_law_of_what_is_left() {
+    let inputs = [("x", "\"normal\", mean = 1.0, std = 0.5"), ("y", "\"normal\", mean = 0.2, std = 0.1")];
+    let folder = built_from(&oscillator(&inputs, 1.1, ""));
+    let report = json(folder.path(), &["eval", "built.pcc", "-n", "100000", "--critical", "x"]);
+    let quantiles = report["critical"]["quantiles"].as_array().unwrap();
+    let median = quantiles.iter().find(|quantile| quantile["level"] == 0.5).unwrap();
+    assert!((number(median, "/value") - 0.9).abs() < 0.003, "{quantiles:?}");
+    assert!((number(&report, "/critical/mean") - 0.9).abs() < 0.003, "{report}");
+    assert_eq!(number(&report, "/critical/never"), 0.0);
+}
+
+/// Shares of the variance of x + y are those of the variances.
+#[test]
+fn sensitivities_to_normal_inputs_are_shares_of_the_variance() {
+    let inputs = [("x", "\"normal\", mean = 1.0, std = 0.3"), ("y", "\"normal\", mean = 0.2, std = 0.4")];
+    let folder = built_from(&oscillator(&inputs, 1.1, ""));
+    let report = json(folder.path(), &["eval", "built.pcc", "-n", "200000"]);
+    for (at, expected) in [0.36, 0.64].into_iter().enumerate() {
+        for order in ["first", "total"] {
+            let found = number(&report, &format!("/sensitivity/inputs/{at}/max_re/{order}/value"));
+            assert!((found - expected).abs() < 0.01, "{order} {at}: {found}");
+        }
+    }
+}
+
+/// The clutch with scatter of the same mean and standard deviation as that of the shipped study, but for this law of
+/// its friction.
+fn clutch(friction: &str) -> String {
+    let study = text("surrogates/clutch-r3.toml");
+    let head = study.split("[inputs]").next().unwrap();
+    let std = |half: f64| half / 3f64.sqrt();
+    format!(
+        "{head}[inputs]\nmu = {{ distribution = {friction} }}\nk_p = {{ distribution = \"normal\", mean = 16e6, std = \
+         {:?} }}\nk_f = {{ distribution = \"lognormal\", mean = 7e6, std = {:?} }}\n[spectrum]\ntarget = \
+         \"invariants\"\n",
+        std(0.8e6),
+        std(0.35e6)
+    )
+}
+
+/// Runs, and the error of the share in percent.
+fn runs_and_error(study: &Study) -> (u64, f64) {
+    let surrogate = build(study);
+    let compared = compare_with_model(&surrogate, study, 20_000, 1, &Silent).unwrap();
+    (surrogate.training.counts.direct_computations, compared.relative_error_percent().unwrap().abs())
+}
+
+#[test]
+fn the_clutch_with_scatter_without_bounds_is_as_exact_as_with_intervals() {
+    let std = 0.25 / 3f64.sqrt();
+    let truncated = format!("\"normal\", mean = 0.25, std = {std:?}, lower = 0.0");
+    for friction in ["\"uniform\", lower = 0.0, upper = 0.5", "\"normal\", mean = 0.12, std = 0.015", &truncated] {
+        for seed in [1, 2] {
+            let (uniform_runs, _) = runs_and_error(&Study { seed, ..invariants_study(3) });
+            let (runs, error) = runs_and_error(&Study { seed, ..Study::from_toml(&clutch(friction)).unwrap() });
+            let found =
+                format!("{friction}, seed {seed}: {runs} runs, {uniform_runs} of uniform inputs; error {error} %");
+            println!("{found}");
+            assert!(error <= 0.1 && 2 * runs <= 3 * uniform_runs, "{found}");
+        }
+    }
+}
+
+#[test]
+fn files_keep_laws_in_both_forms() {
+    let mut laws: Vec<(String, &str)> = SHARES.iter().enumerate().map(|(at, row)| (format!("x{at}"), row.0)).collect();
+    laws.push(("u".to_owned(), "\"uniform\", lower = 0.0, upper = 0.1"));
+    let inputs: Vec<(&str, &str)> = laws.iter().map(|(name, law)| (name.as_str(), *law)).collect();
+    let study = oscillator(&inputs, 9.0, "");
+    let folder = built_from(&study);
+    let path = folder.path();
+    output(path, &["convert", "built.pcc", "there.json"]);
+    output(path, &["convert", "there.json", "back.pcc"]);
+    let inspect = |name: &str| json(path, &["inspect", name]);
+    assert_eq!(inspect("built.pcc")["content_id"], inspect("there.json")["content_id"]);
+    assert_eq!(inspect("built.pcc")["format"], "1.3");
+    assert_eq!(fs::read(path.join("built.pcc")).unwrap(), fs::read(path.join("back.pcc")).unwrap());
+    let shown = in_one_line(&output(path, &["inspect", "built.pcc"]));
+    assert!(shown.contains("x0 normal mean 1, std 0.2 hermite"), "{shown}");
+    assert!(shown.contains("x2 log-uniform lower 0.2, upper 2 legendre"), "{shown}");
+
+    // Files that say a law in two ways, or of which the polynomials are others.
+    let text = fs::read_to_string(path.join("there.json")).unwrap();
+    for (from, to) in [("\"hermite\"", "\"legendre\""), ("\"lognormal\"", "\"lognorm\""), ("\"std\"", "\"cv\"")] {
+        let changed = text.replacen(from, to, 1);
+        assert_ne!(changed, text, "{from}");
+        fs::write(path.join("bad.json"), changed).unwrap();
+        refusal(path, &["inspect", "bad.json"]);
+    }
+
+    // A study that is printed is the same study.
+    let first = Study::from_toml(&study).unwrap();
+    let again = Study::from_toml(&first.to_toml()).unwrap();
+    assert_eq!((again.problem_hash(), again.study_hash()), (first.problem_hash(), first.study_hash()));
+}
+
+#[test]
+fn laws_that_make_no_sense_are_refused() {
+    for (law, expected) in [
+        ("\"normal\", mean = 1.0, std = 0.0", "std is 0, but must be a positive number"),
+        ("\"normal\", mean = 0.0, cv = 0.1", "the mean is 0; give std instead"),
+        ("\"normal\", mean = 1.0, cv = \"-5%\"", "above 0"),
+        ("\"normal\", mean = 1.0", "mean and std, mean and cv, or nominal and cv"),
+        ("\"normal\", mean = 1.0, std = 0.1, shape = 2.0", "a normal law has mean and std"),
+        ("\"normal\", mean = nan, std = 0.1", "mean is NaN"),
+        ("\"normal\", mean = 1.0, std = 0.1, lower = 3.0", "of the probability"),
+        ("\"normal\", mean = 1.0, std = 0.1, lower = 1.2, upper = 1.1", "(1.2) is not below"),
+        ("\"lognormal\", mean = -1.0, std = 0.1", "mean is -1, but must be a positive number"),
+        ("\"log-uniform\", lower = 0.0, upper = 1.0", "lower is 0, but must be a positive number"),
+        ("\"log-uniform\", lower = 2.0, upper = 1.0", "(2) is not below"),
+        ("\"exponential\", mean = inf", "mean is inf"),
+        ("\"weibull\", shape = 1.0, scale = -1.0", "scale is -1"),
+        ("\"gauss\", mean = 1.0, std = 1.0", "choose \"uniform\", \"normal\", \"lognormal\", \"log-uniform\""),
+    ] {
+        let folder = folder_with(&oscillator(&[("x", law)], 1.1, ""));
+        let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
+        assert!(message.contains(expected) && message.contains("inputs.x"), "{law}: {message}");
+    }
+}
+
+/// A normal friction coefficient is negative now and then.
+#[test]
+fn laws_beyond_what_a_parameter_can_be_are_to_be_cut_off() {
+    let folder = folder_with(&clutch("\"normal\", mean = 0.25, cv = 0.3"));
+    let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
+    assert!(message.contains("inputs.mu") && message.contains("cut the law off with lower"), "{message}");
+}
+
+#[test]
+fn elements_divide_bounded_inputs_alone() {
+    let study = |law: &str| {
+        let inputs = [("u", "\"uniform\", lower = 0.5, upper = 1.5"), ("x", law)];
+        oscillator(&inputs, 1.1, "[fit]\nmethod = \"me-gpc\"\nelements = 4\n")
+    };
+    let folder = folder_with(&study("\"normal\", mean = 0.0, std = 0.1"));
+    let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
+    for expected in ["line 10: inputs.x", "elements divide bounded inputs only", "a normal law has a tail"] {
+        assert!(message.contains(expected), "{message}");
+    }
+    built_from(&study("\"log-uniform\", lower = 0.05, upper = 0.2"));
+}
