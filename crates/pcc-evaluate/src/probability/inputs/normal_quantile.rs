@@ -13,6 +13,7 @@ const MIDDLE: f64 = 0.425;
 const FAR: f64 = 5.0;
 
 /// Numerators and denominators, constant term first.
+#[allow(clippy::excessive_precision, reason = "as published")]
 const CENTRAL: [[f64; 8]; 2] = [
     [
         3.3871328727963666080,
@@ -35,6 +36,7 @@ const CENTRAL: [[f64; 8]; 2] = [
         5.2264952788528545610e3,
     ],
 ];
+#[allow(clippy::excessive_precision, reason = "as published")]
 const NEAR_TAIL: [[f64; 8]; 2] = [
     [
         1.42343711074968357734,
@@ -57,6 +59,7 @@ const NEAR_TAIL: [[f64; 8]; 2] = [
         1.05075007164441684324e-9,
     ],
 ];
+#[allow(clippy::excessive_precision, reason = "as published")]
 const FAR_TAIL: [[f64; 8]; 2] = [
     [
         6.65790464350110377720,
