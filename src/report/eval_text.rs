@@ -18,11 +18,6 @@ const MODES: usize = 6;
 /// Causes without details.
 const CAUSES: usize = 3;
 
-/// "1 sample", "1 000 samples".
-pub(super) fn samples(number: u64) -> String {
-    plural(number as usize, "sample")
-}
-
 /// How long samples took, or how many parts they come from.
 pub(super) fn pace(samples: f64, seconds: f64, merged_parts: Option<usize>) -> String {
     match merged_parts {
@@ -113,7 +108,8 @@ impl fmt::Display for EvalReport {
             write!(f, "{critical:columns$}")?;
         }
         let how = pace(self.samples as f64, self.elapsed_seconds, self.only_in_text.merged_parts);
-        let last = format!("{} of the {} {how}, seed {}", samples(self.samples), self.source, self.seed);
+        let samples = plural(self.samples as usize, "sample");
+        let last = format!("{samples} of the {} {how}, seed {}", self.source, self.seed);
         writeln!(f, "\n{}", wrapped(&last, columns, 0))?;
         if f.alternate() { Ok(()) } else { writeln!(f, "more: --details") }
     }

@@ -1,6 +1,6 @@
 //! A sweep as people read it: a table for one input, a map of characters for two.
 
-use super::eval_text::{pace, samples};
+use super::eval_text::pace;
 use super::layout::{Facts, width, wrapped, write_verdict, write_warnings};
 use super::numbers::{interval, plain, share, significant};
 use super::survey::conditions_text;
@@ -30,7 +30,7 @@ impl fmt::Display for SweepReport {
             _ => write!(f, "{:columns$}", self.table(columns))?,
         }
         let how = pace(self.samples as f64 * self.points.len() as f64, self.elapsed_seconds, self.merged_parts);
-        let last = format!("{} each {how}, seed {}", samples(self.samples), self.seed);
+        let last = format!("{} each {how}, seed {}", plural(self.samples as usize, "sample"), self.seed);
         writeln!(f, "\n{}", wrapped(&last, columns, 0))?;
         match self.files.is_empty() {
             true => Ok(()),

@@ -19,11 +19,13 @@ const MOST_NAMED: usize = 3;
 /// Inputs with this part of the first one's share decide as well.
 const AS_WELL: f64 = 0.5;
 
-/// What can be unstable: a mode or a real eigenvalue.
-struct Culprit {
+/// What is unstable in some samples: a mode or a real eigenvalue.
+struct Instability {
     name: String,
-    unstable: f64,
+    /// Share of the samples.
+    share: f64,
     verb: &'static str,
+    /// Mean frequency where it flutters, in Hz.
     frequency: Option<f64>,
 }
 
@@ -33,6 +35,7 @@ impl EvalReport {
         self.unstable_proportion < RARE && self.marginal_proportion == 0.0
     }
 
+    /// The answer in a sentence, and a second one where the model did not answer everywhere.
     pub(super) fn verdict_sentence(&self) -> String {
         let where_asked = match self.conditions.is_empty() {
             true => String::new(),
@@ -40,7 +43,7 @@ impl EvalReport {
         };
         let mut reasons = Vec::new();
         if self.unstable_proportion > 0.0 {
-            reasons.extend(self.culprits());
+            reasons.extend(self.instabilities());
             reasons.extend(self.sensitivity.as_ref().and_then(deciding_inputs));
         }
         let reasons = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join("; ")) };
@@ -86,11 +89,11 @@ impl EvalReport {
     }
 
     /// Which modes, in which way and at what frequencies.
-    fn culprits(&self) -> Option<String> {
+    fn instabilities(&self) -> Option<String> {
         let has_margin = self.margin.is_some();
-        let mode = |mode: &ModeReport| Culprit {
+        let mode = |mode: &ModeReport| Instability {
             name: format!("mode {}", mode.mode),
-            unstable: mode.unstable_share,
+            share: mode.unstable_share,
             verb: match (has_margin, mode.flutter_share >= mode.divergence_share) {
                 (true, _) => "decays too slowly",
                 (false, true) if mode.divergence_share > WORTH_NAMING * mode.flutter_share => "flutters or diverges",
@@ -100,18 +103,19 @@ impl EvalReport {
             },
             frequency: mode.flutter_frequency_hz.map(|frequency| frequency.mean),
         };
-        let real = |real: &RealReport| Culprit {
+        let real = |real: &RealReport| Instability {
             name: real.name.clone(),
-            unstable: real.divergence_share,
+            share: real.divergence_share,
             verb: if has_margin { "decays too slowly" } else { "diverges" },
             frequency: None,
         };
-        let mut all: Vec<Culprit> = self.modes.iter().map(mode).chain(self.real_eigenvalues.iter().map(real)).collect();
-        all.retain(|culprit| culprit.unstable > 0.0);
-        all.sort_by(|a, b| b.unstable.total_cmp(&a.unstable));
-        let least = WORTH_NAMING * all.first()?.unstable;
-        let (named, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|culprit| culprit.unstable >= least);
-        let text = |Culprit { name, verb, frequency, .. }: &Culprit| match frequency {
+        let mut all: Vec<Instability> =
+            self.modes.iter().map(mode).chain(self.real_eigenvalues.iter().map(real)).collect();
+        all.retain(|one| one.share > 0.0);
+        all.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let least = WORTH_NAMING * all.first()?.share;
+        let (named, others): (Vec<_>, Vec<_>) = all.into_iter().partition(|one| one.share >= least);
+        let text = |Instability { name, verb, frequency, .. }: &Instability| match frequency {
             Some(frequency) => format!("{name} {verb} at about {} Hz", significant(*frequency, 3)),
             None => format!("{name} {verb}"),
         };
@@ -129,7 +133,8 @@ impl EvalReport {
     fn unknown(&self) -> String {
         match (self.unanswered_proportion, self.bounds) {
             (Some(unanswered), Some(bounds)) => format!(
-                " The model did not answer in about {}, as far as its runs tell: {} are stable, whatever it would answer there.",
+                " The model did not answer in about {}, as far as its runs tell: {} are stable, whatever it would answer \
+                 there.",
                 share(unanswered),
                 share_range(bounds.stable.lower, bounds.stable.upper)
             ),

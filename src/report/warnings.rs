@@ -32,7 +32,8 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
     };
     let why = match reason {
         "error-stalled" => {
-            "because the estimated error of the proportion hardly falls any more, as where answers are noisy or have kinks"
+            "because the estimated error of the proportion hardly falls any more, as where answers are noisy or have \
+             kinks"
         }
         "fits-cost-more" => {
             "because fits take far longer than the runs of this model; set design.maximum to let it go on"
@@ -67,8 +68,8 @@ impl FitReport {
         let names: Vec<&str> = fits.iter().filter(|fit| fit.has_stalled()).map(|fit| fit.name.as_str()).collect();
         (!names.is_empty()).then(|| {
             format!(
-                "the errors of {} no longer fall with more runs: what is left of them is noise of the model's answers, or detail \
-                 beyond designs of this size",
+                "the errors of {} no longer fall with more runs: what is left of them is noise of the model's answers, or \
+                 detail beyond designs of this size",
                 names.join(", ")
             )
         })
@@ -84,8 +85,8 @@ impl FitReport {
             };
             let mut warnings: Vec<String> = fits.iter().filter(is_poor).map(misfit).collect();
             warnings.push(
-                "quadrature leaves no point out, so nothing is known of the error between its nodes; check with pcc compare or \
-                 certify"
+                "quadrature leaves no point out, so nothing is known of the error between its nodes; check with pcc \
+                 compare or certify"
                     .to_owned(),
             );
             if has(StopReason::Limited) {
@@ -102,7 +103,8 @@ impl FitReport {
                 warnings.push("the points hardly determine all terms; raise fit.oversampling or lower the degree".to_owned());
             }
             "gpc" => warnings.push(
-                "one design does not tell how far the proportion is off, and S² says little of it; check with pcc compare or certify"
+                "one design does not tell how far the proportion is off, and S² says little of it; check with pcc compare \
+                 or certify"
                     .to_owned(),
             ),
             _ if has(StopReason::DesignExhausted) && ended_early(surrogate).is_none() => warnings
@@ -144,7 +146,8 @@ impl FitReport {
                 _ => "a group of modes",
             };
             warnings.push(format!(
-                "in {} of {} model runs {close} came too close to other modes for derivatives; values alone entered the fit there",
+                "in {} of {} model runs {close} came too close to other modes for derivatives; values alone entered the fit \
+                 there",
                 counts.values - counts.gradients,
                 counts.values
             ));
