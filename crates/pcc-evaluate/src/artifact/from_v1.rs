@@ -31,7 +31,7 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
     let mesh = mesh(&document.elements, inputs.dimension())?;
     let components: usize = outputs.iter().map(|output| output.components.len()).sum();
     let expansions = expansions(document.expansions, inputs.dimension(), mesh.elements().len(), components)?;
-    check_recurrences(&document.inputs, &expansions)?;
+    check_recurrences(&document.inputs, &inputs, &expansions)?;
     let self_test = self_test(document.self_test, &inputs, components)?;
     let coverage = coverage(document.coverage, &inputs)?;
     let divides_unbounded =
@@ -110,22 +110,18 @@ fn close(found: f64, expected: f64, scale: f64) -> bool {
 }
 
 /// The stored recurrences are those of the families, and reach the degrees that the expansions use.
-fn check_recurrences(section: &v1::Inputs, expansions: &[Expansion]) -> Result<(), ReadError> {
+fn check_recurrences(section: &v1::Inputs, inputs: &InputSpace, expansions: &[Expansion]) -> Result<(), ReadError> {
     for (j, input) in section.inputs.iter().enumerate() {
         let used = expansions.iter().flat_map(|expansion| expansion.indices.iter().map(move |alpha| alpha[j])).max();
         let degree = input.recurrence.off_diagonal.len();
-        let family = marginal(&input.distribution).ok().map(|marginal| marginal.family()).filter(|family| {
-            matches!(
-                (family, &input.family),
-                (Family::Legendre, v1::Family::Legendre)
-                    | (Family::Hermite, v1::Family::Hermite)
-                    | (Family::TruncatedNormal { .. }, v1::Family::TruncatedNormal)
-            )
-        });
-        let Some(family) = family else {
-            let message = format!("{}: the family is not that of its law", input.name);
-            return Err(ReadError::Meaning { section: "inputs", message });
-        };
+        let family = inputs.inputs()[j].marginal.family();
+        let is_its_own = matches!(
+            (family, &input.family),
+            (Family::Legendre, v1::Family::Legendre)
+                | (Family::Hermite, v1::Family::Hermite)
+                | (Family::TruncatedNormal { .. }, v1::Family::TruncatedNormal)
+        );
+        ensure("inputs", is_its_own, || format!("{}: the family is not that of its law", input.name))?;
         let known = family.recurrence(degree.min(usize::from(HIGHEST_DEGREE)));
         let agrees = |found: &[f64], expected: &[f64]| {
             found.len() == expected.len() && found.iter().zip(expected).all(|(&a, &b)| close(a, b, 1.0))
