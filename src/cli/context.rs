@@ -4,7 +4,7 @@ use super::about;
 use super::messages::{self, print, print_report};
 use super::overwrite::certificates_to_keep;
 use super::terminal::Terminal;
-use crate::report::EvalReport;
+use crate::report::{EvalReport, WIDTH};
 use pcc_compile::campaign::{Books, Note, Recording, RunError};
 use pcc_compile::compilation::{BuildFileError, BuiltFile, build_to_file};
 use pcc_compile::reference::ReferenceError;
@@ -19,14 +19,13 @@ use std::fmt::Display;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Columns of text where standard output is no terminal, and what is easily read where it is a wide one.
-const COLUMNS: usize = 80;
+/// Columns of text that are easily read, where a terminal is wider.
 const MOST_COLUMNS: usize = 120;
 
 /// How wide text may be.
 fn columns() -> usize {
     terminal_size::terminal_size_of(std::io::stdout())
-        .map_or(COLUMNS, |(width, _)| usize::from(width.0).min(MOST_COLUMNS))
+        .map_or(WIDTH, |(width, _)| usize::from(width.0).min(MOST_COLUMNS))
 }
 
 /// What every command is given.

@@ -2,7 +2,7 @@
 
 use anyhow::bail;
 use pcc_evaluate::artifact::{self, looks_like_a_surrogate};
-use pcc_evaluate::foundation::check_writable;
+use pcc_evaluate::foundation::{check_writable, plural};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -88,10 +88,9 @@ pub(super) fn certificates_to_keep(path: &Path, may_be_lost: bool) -> anyhow::Re
     match known.map_or(0, |artifact| artifact.surrogate.certificates.len()) {
         count if count == 0 || may_be_lost => Ok(count),
         count => bail!(
-            "{}: has {count} certificate{}, which will be lost if the build gives another surrogate; name another \
-             output, or pass --replace",
+            "{}: has {}, which will be lost if the build gives another surrogate; name another output, or pass --replace",
             path.display(),
-            if count == 1 { "" } else { "s" }
+            plural(count, "certificate")
         ),
     }
 }

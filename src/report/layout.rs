@@ -6,7 +6,7 @@
 use std::fmt;
 
 /// Columns of a terminal of which nothing is known.
-pub(super) const WIDTH: usize = 80;
+pub(crate) const WIDTH: usize = 80;
 
 /// Narrower than this nothing is readable.
 const LEAST: usize = 40;
@@ -18,7 +18,7 @@ const NAME: usize = 17;
 const GAP: &str = "  ";
 
 /// The columns there are.
-pub(super) fn width(f: &fmt::Formatter<'_>) -> usize {
+pub(crate) fn width(f: &fmt::Formatter<'_>) -> usize {
     f.width().unwrap_or(WIDTH).max(LEAST)
 }
 

@@ -6,7 +6,7 @@ use crate::cli::overwrite::{Output, refuse_to_replace};
 use crate::cli::shared_options::{RecordingOptions, seed};
 use crate::cli::study_of::runs_or_default;
 use crate::cli::{Context, Ending, about};
-use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table};
+use crate::report::{Align, BuildReport, CompareReport, EvalReport, Table, width};
 use anyhow::Context as _;
 use clap::Args;
 use pcc_compile::campaign::{Books, Campaign};
@@ -210,7 +210,7 @@ impl fmt::Display for RunReport {
         let heading =
             |f: &mut fmt::Formatter<'_>, text: &str| writeln!(f, "── {text} {}\n", "─".repeat(76 - text.len()));
         let Self { build, eval, compare, methods } = self;
-        let columns = f.width().unwrap_or(80);
+        let columns = width(f);
         heading(f, "build")?;
         writeln!(f, "{}", text(build, f))?;
         heading(f, "compare with the model")?;
@@ -227,6 +227,6 @@ impl fmt::Display for RunReport {
 
 /// A report as it is asked for: with details or without, in so many columns.
 fn text(report: &impl fmt::Display, f: &fmt::Formatter<'_>) -> String {
-    let columns = f.width().unwrap_or(80);
+    let columns = width(f);
     if f.alternate() { format!("{report:#columns$}") } else { format!("{report:columns$}") }
 }
