@@ -203,7 +203,7 @@ fn laws_that_make_no_sense_are_refused() {
         ("\"log-uniform\", lower = 2.0, upper = 1.0", "(2) is not below"),
         ("\"exponential\", mean = inf", "mean is inf"),
         ("\"weibull\", shape = 1.0, scale = -1.0", "scale is -1"),
-        ("\"gauss\", mean = 1.0, std = 1.0", "choose \"uniform\", \"normal\", \"lognormal\", \"log-uniform\""),
+        ("\"gauss\", mean = 1.0, std = 1.0", "choose \"uniform\", \"normal\", \"lognormal\", \"gamma\", \"beta\""),
     ] {
         let folder = folder_with(&oscillator(&[("x", law)], 1.1, ""));
         let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));

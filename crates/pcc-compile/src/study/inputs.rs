@@ -1,12 +1,89 @@
-//! What an input has beside its law: how it is shown.
+//! Inputs: their laws, and how they are shown.
 
 use super::error::StudyError;
+use super::model::Kind;
 use super::raw;
 use super::validate::Lines;
-use pcc_evaluate::probability::inputs::{Description, DescriptionError};
+use crate::mechanics::model::Parameter;
+use pcc_evaluate::components::is_result_column;
+use pcc_evaluate::probability::inputs::{
+    Description, DescriptionError, Input, InputSpace, Marginal, MarginalError, Parameters, Polynomials,
+};
+use toml::Spanned;
 
 impl Lines<'_> {
-    pub(super) fn unit_and_label(&self, name: &str, input: &raw::Input) -> Result<Description, StudyError> {
+    /// The inputs in their order.
+    pub(super) fn inputs(
+        &self,
+        table: Spanned<raw::Ordered<raw::Input>>,
+        kind: Kind,
+    ) -> Result<InputSpace, StudyError> {
+        let place = self.place("inputs", &table);
+        let mut inputs = Vec::new();
+        for (name, raw) in table.into_inner().0 {
+            let parameter = self.parameter_of_kind(kind, "inputs", &name, &raw)?;
+            if is_result_column(&name) {
+                return Err(StudyError::ResultColumn { place: self.place(format!("inputs.{name}"), &raw), name });
+            }
+            let marginal = self.marginal(&name, parameter, &raw)?;
+            inputs.push(Input { description: self.unit_and_label(&name, raw.get_ref())?, marginal, name });
+        }
+        InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
+    }
+
+    fn marginal(
+        &self,
+        name: &str,
+        parameter: Option<&Parameter>,
+        raw: &Spanned<raw::Input>,
+    ) -> Result<Marginal, StudyError> {
+        let key = format!("inputs.{name}");
+        let input = raw.get_ref();
+        let laws: Vec<(&str, ())> = Marginal::names().map(|name| (name, ())).collect();
+        self.word(&format!("{key}.distribution"), &input.distribution, &laws)?;
+        let place = self.place(&key, raw);
+        let spread = input.spread.as_ref().map(|spread| self.spread(&key, spread)).transpose()?;
+        let cv = input.cv.as_ref().map(|cv| self.variation(&key, cv)).transpose()?;
+        let given = [
+            ("lower", input.lower),
+            ("upper", input.upper),
+            ("nominal", input.nominal),
+            ("spread", spread),
+            ("mean", input.mean),
+            ("std", input.std),
+            ("cv", cv),
+            ("median", input.median),
+            ("shape", input.shape),
+            ("scale", input.scale),
+            ("location", input.location),
+            ("alpha", input.alpha),
+            ("beta", input.beta),
+            ("mode", input.mode),
+        ];
+        let polynomials = input.polynomials.as_ref();
+        let polynomials =
+            polynomials.map(|word| self.word(&format!("{key}.polynomials"), word, &Polynomials::ALL)).transpose()?;
+        let given = Parameters::of(given.into_iter().filter_map(|(name, value)| Some((name, value?))))
+            .with_polynomials(polynomials);
+        let marginal = Marginal::named(input.distribution.get_ref(), &given).map_err(|cause| match cause {
+            MarginalError::Form { law: "uniform", .. } => StudyError::DistributionForm { place: place.clone() },
+            cause => StudyError::Distribution { place: place.clone(), cause },
+        })?;
+        let [lower, upper] = marginal.support();
+        if let Some(parameter) = parameter.filter(|p| !p.range.holds_nearly_all_of(&marginal)) {
+            let expected = match lower.is_finite() && upper.is_finite() {
+                true => format!("{} over the whole interval", parameter.range.describe()),
+                false => {
+                    let range = parameter.range.describe();
+                    format!("{range} but for a billionth of all values; cut the law off with lower, or choose another")
+                }
+            };
+            return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });
+        }
+        Ok(marginal)
+    }
+
+    fn unit_and_label(&self, name: &str, input: &raw::Input) -> Result<Description, StudyError> {
         type Add = fn(Description, &str) -> Result<Description, DescriptionError>;
         let mut description = Description::default();
         let keys: [(_, _, Add); 2] = [

@@ -113,7 +113,9 @@ fn inputs(file: &mut Printer, study: &Study) {
         let texts: String =
             given.into_iter().filter_map(|(key, value)| Some(format!(", {key} = {}", text(value?)))).collect();
         let unit = if description.unit().is_some() { "" } else { unit_of(&study.model, &input.name) };
-        let value = format!("{{ distribution = \"{}\"{parameters}{texts} }}", input.marginal.name());
+        let polynomials = input.marginal.chosen_polynomials();
+        let polynomials = polynomials.map(|chosen| format!(", polynomials = {:?}", chosen.name())).unwrap_or_default();
+        let value = format!("{{ distribution = \"{}\"{parameters}{polynomials}{texts} }}", input.marginal.name());
         file.line(&input.name, value, unit);
     }
 }

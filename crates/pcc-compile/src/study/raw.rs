@@ -123,6 +123,10 @@ pub(super) struct Input {
     pub shape: Option<f64>,
     pub scale: Option<f64>,
     pub location: Option<f64>,
+    pub alpha: Option<f64>,
+    pub beta: Option<f64>,
+    pub mode: Option<f64>,
+    pub polynomials: Option<Spanned<String>>,
     pub unit: Option<Spanned<String>>,
     pub label: Option<Spanned<String>>,
 }

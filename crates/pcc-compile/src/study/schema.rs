@@ -223,32 +223,43 @@ enum Entry {
 struct Input {
     /// How its values are distributed.
     distribution: Distribution,
-    /// Lowest value. Of: uniform, log-uniform; normal, which it cuts off.
+    /// Lowest value. Of: uniform, log-uniform, beta (0 unless given), triangular; normal, which it cuts off.
     lower: Option<f64>,
-    /// Highest value. Of: uniform, log-uniform; normal, which it cuts off.
+    /// Highest value. Of: uniform, log-uniform, beta (1 unless given), triangular; normal, which it cuts off.
     upper: Option<f64>,
-    /// Value in the middle. Of: uniform, with `spread`; normal and lognormal, with `cv`: the mean.
+    /// Value in the middle. Of: uniform, with `spread`; normal, lognormal, gamma, with `cv`: the mean.
     nominal: Option<f64>,
     /// Half the range, relative to `nominal`: 0.05, or "5%", means from 0.95 to 1.05 times nominal. Of: uniform.
     spread: Option<Relative>,
-    /// Mean; of a normal law before it is cut off. Of: normal, lognormal, exponential, gumbel.
+    /// Mean; of a normal law before it is cut off. Of: normal, lognormal, gamma, beta, exponential, gumbel.
     mean: Option<f64>,
-    /// Standard deviation; of a normal law before it is cut off. Of: normal, lognormal, gumbel.
+    /// Standard deviation; of a normal law before it is cut off. Of: normal, lognormal, gamma, beta, gumbel.
     #[schemars(extend("exclusiveMinimum" = 0))]
     std: Option<f64>,
-    /// Standard deviation relative to the mean: 0.05, or "5%". Of: normal, lognormal.
+    /// Standard deviation relative to the mean: 0.05, or "5%". Of: normal, lognormal, gamma, beta.
     cv: Option<Relative>,
     /// Value that half of all values are below. Of: lognormal, with `cv`.
     #[schemars(extend("exclusiveMinimum" = 0))]
     median: Option<f64>,
-    /// Exponent of the law. Of: weibull.
+    /// Exponent of the law. Of: weibull, gamma.
     #[schemars(extend("exclusiveMinimum" = 0))]
     shape: Option<f64>,
-    /// Width of the law. Of: weibull, gumbel.
+    /// Width of the law. Of: weibull, gumbel, gamma.
     #[schemars(extend("exclusiveMinimum" = 0))]
     scale: Option<f64>,
     /// Most frequent value. Of: gumbel.
     location: Option<f64>,
+    /// Exponent at the lower end. Of: beta.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    alpha: Option<f64>,
+    /// Exponent at the upper end. Of: beta.
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    beta: Option<f64>,
+    /// Likeliest value. Of: triangular.
+    mode: Option<f64>,
+    /// Which polynomials expansions have. Default: own, but for inputs over orders of magnitude. Of: lognormal, gamma,
+    /// beta, triangular, exponential, weibull, gumbel; normal where it is cut off.
+    polynomials: Option<Polynomials>,
     /// Unit of its values, shown beside them.
     unit: Option<String>,
     /// What it is, shown beside its name.
@@ -266,6 +277,15 @@ enum Relative {
 
 #[derive(JsonSchema)]
 #[schemars(rename_all = "kebab-case")]
+enum Polynomials {
+    /// Orthonormal under the law itself.
+    Own,
+    /// Of a standard normal variable of which the input is a function.
+    Hermite,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "kebab-case")]
 enum Distribution {
     /// All values of the range are equally likely: lower and upper, or nominal and spread.
     Uniform,
@@ -274,6 +294,12 @@ enum Distribution {
     /// The logarithm is normal: mean and std, mean and cv, or median and cv, of the variable itself.
     #[schemars(rename = "lognormal")]
     LogNormal,
+    /// Gamma, from 0: mean and std, mean and cv, or shape and scale.
+    Gamma,
+    /// Beta: alpha and beta, or mean and std; between lower and upper, which are 0 and 1 unless given.
+    Beta,
+    /// Rises to its mode and falls: lower, mode and upper.
+    Triangular,
     /// The logarithm is uniform: lower and upper.
     LogUniform,
     /// Exponential, from 0: mean.

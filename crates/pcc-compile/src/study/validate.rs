@@ -10,10 +10,8 @@ use super::model::Kind;
 use super::settings::{DesignKind, DesignSettings, FitSettings, SpectrumSettings};
 use super::{STUDY_FORMAT, Study, defaults, raw};
 use crate::fitting::fit::FitMethod;
-use crate::mechanics::model::Parameter;
 use crate::mechanics::spectrum::{Modes, Target};
-use pcc_evaluate::components::{Margin, is_result_column};
-use pcc_evaluate::probability::inputs::{Germ, Input, InputSpace, Marginal, MarginalError, Parameters};
+use pcc_evaluate::components::Margin;
 
 /// Design sizes above this need more memory for the regression than a workstation has.
 const LARGEST_DESIGN: i64 = 1_000_000;
@@ -59,7 +57,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
         return Err(StudyError::SkippingOfQuadrature { place });
     }
     if let FitMethod::MultiElement(_) = fit.method
-        && let Some(at) = inputs.inputs().iter().position(|input| input.marginal.germ() != Germ::Uniform)
+        && let Some(at) = inputs.inputs().iter().position(|input| !input.marginal.is_divisible())
     {
         let law = inputs.inputs()[at].marginal.name();
         return Err(StudyError::ElementsOfUnbounded { place: places[at].clone(), law });
@@ -174,65 +172,6 @@ impl Lines<'_> {
             found: format!("{text:?}"),
             expected: "1 to 100 letters, digits, '.', '_' or '-', starting with a letter, digit or '_'".to_owned(),
         })
-    }
-
-    fn inputs(&self, table: Spanned<raw::Ordered<raw::Input>>, kind: Kind) -> Result<InputSpace, StudyError> {
-        let place = self.place("inputs", &table);
-        let mut inputs = Vec::new();
-        for (name, raw) in table.into_inner().0 {
-            let parameter = self.parameter_of_kind(kind, "inputs", &name, &raw)?;
-            if is_result_column(&name) {
-                return Err(StudyError::ResultColumn { place: self.place(format!("inputs.{name}"), &raw), name });
-            }
-            let marginal = self.marginal(&name, parameter, &raw)?;
-            inputs.push(Input { description: self.unit_and_label(&name, raw.get_ref())?, marginal, name });
-        }
-        InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
-    }
-
-    fn marginal(
-        &self,
-        name: &str,
-        parameter: Option<&Parameter>,
-        raw: &Spanned<raw::Input>,
-    ) -> Result<Marginal, StudyError> {
-        let key = format!("inputs.{name}");
-        let input = raw.get_ref();
-        let laws: Vec<(&str, ())> = Marginal::names().map(|name| (name, ())).collect();
-        self.word(&format!("{key}.distribution"), &input.distribution, &laws)?;
-        let place = self.place(&key, raw);
-        let spread = input.spread.as_ref().map(|spread| self.spread(&key, spread)).transpose()?;
-        let cv = input.cv.as_ref().map(|cv| self.variation(&key, cv)).transpose()?;
-        let given = [
-            ("lower", input.lower),
-            ("upper", input.upper),
-            ("nominal", input.nominal),
-            ("spread", spread),
-            ("mean", input.mean),
-            ("std", input.std),
-            ("cv", cv),
-            ("median", input.median),
-            ("shape", input.shape),
-            ("scale", input.scale),
-            ("location", input.location),
-        ];
-        let given = Parameters::of(given.into_iter().filter_map(|(name, value)| Some((name, value?))));
-        let marginal = Marginal::named(input.distribution.get_ref(), &given).map_err(|cause| match cause {
-            MarginalError::Form { law: "uniform", .. } => StudyError::DistributionForm { place: place.clone() },
-            cause => StudyError::Distribution { place: place.clone(), cause },
-        })?;
-        let [lower, upper] = marginal.support();
-        if let Some(parameter) = parameter.filter(|p| !p.range.holds_nearly_all_of(&marginal)) {
-            let expected = match lower.is_finite() && upper.is_finite() {
-                true => format!("{} over the whole interval", parameter.range.describe()),
-                false => {
-                    let range = parameter.range.describe();
-                    format!("{range} but for a billionth of all values; cut the law off with lower, or choose another")
-                }
-            };
-            return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });
-        }
-        Ok(marginal)
     }
 
     fn spectrum(&self, raw: raw::Spectrum, kind: Kind) -> Result<SpectrumSettings, StudyError> {

@@ -1,41 +1,42 @@
 //! From the sections of format 1 to a surrogate in which everything holds.
 
 use super::error::ReadError;
+use super::inputs::close;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
-use super::{descriptions, v1, v2};
+use super::{descriptions, inputs as section_2, v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
-use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh, MultiIndex, Split};
-use crate::probability::inputs::{Germ, Input, InputSpace, Marginal, Parameters, Uniform};
+use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
+use crate::probability::inputs::{Input, InputSpace};
 use crate::surrogate::{
     Band, Certificate, Counts, Coverage, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest,
     Setting, SettingValue, StopReason, Surrogate, Training, VerdictBasis,
 };
 
 /// Degrees above this are refused, so that a forged index cannot exhaust memory.
-const HIGHEST_DEGREE: u16 = 1000;
+pub(super) const HIGHEST_DEGREE: u16 = 1000;
 
 /// Points of a self-test, and the largest difference it may allow and still be a test.
 const SELF_TEST_POINTS: usize = 16;
 const LARGEST_TOLERANCE: f64 = 1e-6;
 
 /// Stored and computed recurrences and transforms differ by roundings at most.
-const ROUNDING: f64 = 1e-12;
+pub(super) const ROUNDING: f64 = 1e-12;
 
 pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> {
     if let Some(section) = not_finite(&document) {
         return Err(ReadError::Meaning { section, message: "it holds a number that is not finite".to_owned() });
     }
     let provenance = provenance(document.meta)?;
-    let inputs = inputs(&document.inputs)?;
+    let inputs = section_2::space(&document.inputs)?;
     let outputs = outputs(document.outputs)?;
     let mesh = mesh(&document.elements, inputs.dimension())?;
     let components: usize = outputs.iter().map(|output| output.components.len()).sum();
     let expansions = expansions(document.expansions, inputs.dimension(), mesh.elements().len(), components)?;
-    check_recurrences(&document.inputs, &inputs, &expansions)?;
+    section_2::check_recurrences(&document.inputs, &inputs, &expansions)?;
     let self_test = self_test(document.self_test, &inputs, components)?;
     let coverage = coverage(document.coverage, &inputs)?;
     let divides_unbounded =
-        mesh.elements().len() > 1 && inputs.inputs().iter().any(|input| input.marginal.germ() != Germ::Uniform);
+        mesh.elements().len() > 1 && inputs.inputs().iter().any(|input| !input.marginal.is_divisible());
     ensure("elements", !divides_unbounded, || "only bounded standardized variables have elements".to_owned())?;
     Ok(Surrogate {
         provenance,
@@ -63,75 +64,6 @@ fn provenance(meta: v1::Meta) -> Result<Provenance, ReadError> {
         problem_hash: meta.problem_hash,
         study_hash: meta.study_hash,
     })
-}
-
-fn inputs(section: &v1::Inputs) -> Result<InputSpace, ReadError> {
-    let v1::Dependence::Independent = section.dependence;
-    let mut inputs = Vec::with_capacity(section.inputs.len());
-    for input in &section.inputs {
-        let meaning =
-            |message: String| ReadError::Meaning { section: "inputs", message: format!("{}: {message}", input.name) };
-        let marginal = marginal(&input.distribution).map_err(meaning)?;
-        let transform_fits = match (&input.transform, &marginal) {
-            (v1::Transform::Affine { center, half_width }, Marginal::Uniform(law)) => {
-                close(*center, law.center(), law.half_width()) && close(*half_width, law.half_width(), law.half_width())
-            }
-            (v1::Transform::OfLaw, law) => !matches!(law, Marginal::Uniform(_)),
-            _ => false,
-        };
-        let [lower, upper] = marginal.support();
-        let bounds_fit = input.bounds.as_ref().is_none_or(|b| b.lower == lower && b.upper == upper);
-        if !(transform_fits && bounds_fit && !input.name.is_empty() && is_printable(&input.name)) {
-            return Err(meaning("name, transform or bounds do not fit the distribution".to_owned()));
-        }
-        inputs.push(Input::new(input.name.clone(), marginal));
-    }
-    InputSpace::new(inputs).map_err(|error| ReadError::Meaning { section: "inputs", message: error.to_string() })
-}
-
-fn marginal(distribution: &v1::Distribution) -> Result<Marginal, String> {
-    match distribution {
-        v1::Distribution::Uniform { lower, upper } => {
-            Uniform::new(*lower, *upper).map(Marginal::Uniform).map_err(|error| error.to_string())
-        }
-        v1::Distribution::Law { name, parameters } => {
-            let known = Parameters::of(parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.value)));
-            let found = Marginal::named(name, &known).map_err(|error| error.to_string())?;
-            // Said in the way that is written, and in no other.
-            let is_same = found.parameters().into_iter().eq(parameters.iter().map(|p| (p.name.as_str(), p.value)));
-            let is_law = !matches!(found, Marginal::Uniform(_)) && is_same;
-            if is_law { Ok(found) } else { Err("the parameters are not those of its law".to_owned()) }
-        }
-    }
-}
-
-fn close(found: f64, expected: f64, scale: f64) -> bool {
-    (found - expected).abs() <= ROUNDING * expected.abs().max(scale)
-}
-
-/// The stored recurrences are those of the families, and reach the degrees that the expansions use.
-fn check_recurrences(section: &v1::Inputs, inputs: &InputSpace, expansions: &[Expansion]) -> Result<(), ReadError> {
-    for (j, input) in section.inputs.iter().enumerate() {
-        let used = expansions.iter().flat_map(|expansion| expansion.indices.iter().map(move |alpha| alpha[j])).max();
-        let degree = input.recurrence.off_diagonal.len();
-        let family = inputs.inputs()[j].marginal.family();
-        let is_its_own = matches!(
-            (family, &input.family),
-            (Family::Legendre, v1::Family::Legendre)
-                | (Family::Hermite, v1::Family::Hermite)
-                | (Family::TruncatedNormal { .. }, v1::Family::TruncatedNormal)
-        );
-        ensure("inputs", is_its_own, || format!("{}: the family is not that of its law", input.name))?;
-        let known = family.recurrence(degree.min(usize::from(HIGHEST_DEGREE)));
-        let agrees = |found: &[f64], expected: &[f64]| {
-            found.len() == expected.len() && found.iter().zip(expected).all(|(&a, &b)| close(a, b, 1.0))
-        };
-        let fits = agrees(&input.recurrence.diagonal, &known.diagonal)
-            && agrees(&input.recurrence.off_diagonal, &known.off_diagonal)
-            && degree >= usize::from(used.unwrap_or(0));
-        ensure("inputs", fits, || format!("{}: the recurrence is not that of its family and degree", input.name))?;
-    }
-    Ok(())
 }
 
 fn outputs(section: v2::AnyOutputs) -> Result<Vec<Output>, ReadError> {
@@ -360,7 +292,7 @@ fn verdict(stored: Option<v2::Verdict>) -> Result<VerdictBasis, ReadError> {
 
 fn coverage(stored: Option<v2::Coverage>, inputs: &InputSpace) -> Result<Option<Coverage>, ReadError> {
     let Some(v2::Coverage { answered, unanswered }) = stored else { return Ok(None) };
-    let is_inside = |(input, xi): (&Input, &f64)| input.marginal.germ() != Germ::Uniform || xi.abs() <= 1.0;
+    let is_inside = |(input, xi): (&Input, &f64)| !input.marginal.is_divisible() || xi.abs() <= 1.0;
     let dimension = inputs.dimension();
     let is_point = |point: &Vec<f64>| point.len() == dimension && inputs.inputs().iter().zip(point).all(is_inside);
     let is_shaped = [&answered, &unanswered].into_iter().all(|runs| !runs.is_empty() && runs.iter().all(is_point));

@@ -35,8 +35,14 @@ fn input(input: &v1::Input) -> Vec<f64> {
         v1::Distribution::Uniform { lower, upper } => vec![*lower, *upper],
         v1::Distribution::Law { parameters, .. } => parameters.iter().map(|parameter| parameter.value).collect(),
     };
-    if let v1::Transform::Affine { center, half_width } = input.transform {
-        numbers.extend([center, half_width]);
+    match &input.transform {
+        v1::Transform::Affine { center, half_width } | v1::Transform::Exponential { center, half_width } => {
+            numbers.extend([center, half_width]);
+        }
+        v1::Transform::Pieces { origin, scale, breaks, coefficients } => {
+            numbers.extend([origin, scale]);
+            numbers.extend(breaks.iter().chain(coefficients.iter().flatten()));
+        }
     }
     numbers.extend(&input.recurrence.diagonal);
     numbers.extend(&input.recurrence.off_diagonal);

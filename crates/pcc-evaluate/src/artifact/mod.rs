@@ -9,6 +9,7 @@ mod container;
 mod descriptions;
 mod error;
 mod from_v1;
+mod inputs;
 mod json;
 mod meaning;
 #[cfg(feature = "schema")]

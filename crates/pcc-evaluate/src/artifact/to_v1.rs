@@ -3,10 +3,9 @@
 use super::error::WriteError;
 use super::meaning::not_finite;
 use super::version::{MAJOR, minor};
-use super::{binary, descriptions, v1, v2};
+use super::{binary, descriptions, inputs, v1, v2};
 use crate::components::{Margin, Output, OutputKind};
-use crate::polynomials::{Branch, Element, Family, IndexSet, Mesh};
-use crate::probability::inputs::Marginal;
+use crate::polynomials::{Branch, Element, IndexSet, Mesh};
 use crate::surrogate::{
     Band, Certificate, LeaveOut, MarginalBounds, SettingValue, StopReason, Surrogate, VerdictBasis,
 };
@@ -23,7 +22,7 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
             study_hash: provenance.study_hash.clone(),
             content_id: String::new(),
         },
-        inputs: inputs(surrogate),
+        inputs: inputs::section(surrogate),
         outputs: outputs(surrogate),
         elements: elements(&surrogate.mesh),
         expansions: expansions(surrogate),
@@ -48,51 +47,6 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
     }
     document.meta.content_id = binary::content_id(&document)?;
     Ok(document)
-}
-
-fn inputs(surrogate: &Surrogate) -> v1::Inputs {
-    let dimension = surrogate.inputs.dimension();
-    let mut degrees = vec![0; dimension];
-    for expansion in &surrogate.expansions {
-        for (degree, highest) in degrees.iter_mut().zip(expansion.indices.highest_degrees(dimension)) {
-            *degree = highest.max(*degree);
-        }
-    }
-    let input = |(input, degree): (&crate::probability::inputs::Input, u16)| {
-        let family = input.marginal.family();
-        let recurrence = family.recurrence(usize::from(degree));
-        v1::Input {
-            name: input.name.clone(),
-            distribution: distribution(&input.marginal),
-            transform: match &input.marginal {
-                Marginal::Uniform(law) => v1::Transform::Affine { center: law.center(), half_width: law.half_width() },
-                _ => v1::Transform::OfLaw,
-            },
-            family: match family {
-                Family::Legendre => v1::Family::Legendre,
-                Family::Hermite => v1::Family::Hermite,
-                Family::TruncatedNormal { .. } => v1::Family::TruncatedNormal,
-            },
-            recurrence: v1::Recurrence { diagonal: recurrence.diagonal, off_diagonal: recurrence.off_diagonal },
-            bounds: match input.marginal.support() {
-                [lower, upper] if lower.is_finite() && upper.is_finite() => Some(v1::Bounds { lower, upper }),
-                _ => None,
-            },
-        }
-    };
-    let inputs = surrogate.inputs.inputs().iter().zip(degrees).map(input).collect();
-    v1::Inputs { inputs, dependence: v1::Dependence::Independent }
-}
-
-fn distribution(marginal: &Marginal) -> v1::Distribution {
-    match marginal {
-        Marginal::Uniform(law) => v1::Distribution::Uniform { lower: law.lower(), upper: law.upper() },
-        other => {
-            let parameter = |(name, value): (&str, f64)| v1::Parameter { name: name.to_owned(), value };
-            let parameters = other.parameters().into_iter().map(parameter).collect();
-            v1::Distribution::Law { name: other.name().to_owned(), parameters }
-        }
-    }
 }
 
 /// In version 1 of the section, if that can say it.

@@ -149,9 +149,25 @@ pub enum Transform {
         /// Physical distance from ξ = 0 to ξ = 1.
         half_width: f64,
     },
-    /// x(ξ) that gives x its law where ξ is uniform on [−1, 1] or standard normal, as the family says (since minor
-    /// version 3).
-    OfLaw,
+    /// x = exp(center + half_width ξ) (since minor version 3).
+    Exponential {
+        /// ln x at ξ = 0.
+        center: f64,
+        /// Change of ln x from ξ = 0 to ξ = 1.
+        half_width: f64,
+    },
+    /// x = origin + scale q(z), z being a standard normal variable, in pieces (since minor version 3). Where the family
+    /// is Hermite's, ξ = z; else ξ = q.
+    Pieces {
+        /// Physical value at q = 0.
+        origin: f64,
+        /// Physical distance from q = 0 to q = 1.
+        scale: f64,
+        /// Where pieces begin and end, from −8.5 to 8.5; beyond, the ends count.
+        breaks: Vec<f64>,
+        /// Of each piece c_0, …, c_12 in q = Σ c_k t^k, where t goes from −1 to 1 along the piece.
+        coefficients: Vec<Vec<f64>>,
+    },
 }
 
 /// Family of orthonormal polynomials.
@@ -163,8 +179,12 @@ pub enum Family {
     Legendre,
     /// Orthonormal under the standard normal density (since minor version 3).
     Hermite,
-    /// Orthonormal under the density of a normal law between bounds, which the recurrence says (since minor version 3).
-    TruncatedNormal,
+    /// Orthonormal under a gamma or exponential law (since minor version 3).
+    Laguerre,
+    /// Orthonormal under a beta law (since minor version 3).
+    Jacobi,
+    /// Orthonormal under another law, whose they are (since minor version 3).
+    Own,
 }
 
 /// φ_0 = 1, b_{k+1} φ_{k+1} = (ξ − a_k) φ_k − b_k φ_{k−1}.

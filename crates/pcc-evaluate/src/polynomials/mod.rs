@@ -3,10 +3,12 @@
 
 mod index_set;
 mod mesh;
+mod own;
 mod quadrature;
 mod recurrence;
 
 pub use index_set::{Hyperbolic, IndexSet, IndexSetError, MultiIndex};
 pub use mesh::{Branch, Element, Mesh, MeshError, Split};
+pub use own::OwnPolynomials;
 pub use quadrature::gauss;
 pub use recurrence::{Family, Recurrence};

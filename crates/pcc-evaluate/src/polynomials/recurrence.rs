@@ -1,38 +1,34 @@
 //! Orthonormal polynomials by their three-term recurrence.
 
-use super::quadrature::gauss;
+use super::own::OwnPolynomials;
+use std::sync::Arc;
 
 /// Families of orthogonal polynomials, one per density of a standardized variable (table 1 of the paper).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Family {
     /// Legendre polynomials: uniform density ½ on [−1, 1].
     Legendre,
     /// Hermite polynomials: standard normal density.
     Hermite,
-    /// Polynomials of a standard normal variable on condition that it lies between two bounds, which may be infinite.
-    TruncatedNormal {
-        /// Lower bound.
-        lower: f64,
-        /// Upper bound.
-        upper: f64,
-    },
+    /// Polynomials of a law that is neither.
+    Own(Arc<OwnPolynomials>),
 }
 
 impl Family {
-    /// Name in files and tables.
-    pub fn name(self) -> &'static str {
+    /// Name in tables.
+    pub fn name(&self) -> &'static str {
         match self {
             Self::Legendre => "legendre",
             Self::Hermite => "hermite",
-            Self::TruncatedNormal { .. } => "own",
+            Self::Own(own) => own.name(),
         }
     }
 
     /// The orthonormal recurrence up to `degree`.
     ///
     /// Legendre: a_k = 0, √b_k = k/√(4k² − 1). Hermite: a_k = 0, √b_k = √k. Others by sums over a fine rule.
-    pub fn recurrence(self, degree: usize) -> Recurrence {
+    pub fn recurrence(&self, degree: usize) -> Recurrence {
         match self {
             Self::Legendre => Recurrence {
                 diagonal: vec![0.0; degree],
@@ -42,10 +38,7 @@ impl Family {
                 diagonal: vec![0.0; degree],
                 off_diagonal: (1..=degree).map(|k| (k as f64).sqrt()).collect(),
             },
-            Self::TruncatedNormal { lower, upper } => {
-                let (nodes, weights) = between(lower, upper);
-                stieltjes(&nodes, &weights, degree)
-            }
+            Self::Own(own) => own.recurrence(degree),
         }
     }
 }
@@ -120,52 +113,10 @@ impl Recurrence {
     }
 }
 
-/// Nodes and weights for the standard normal density between two bounds: Gauss rules on panels, so narrow that the
-/// density hardly changes on one.
-fn between(lower: f64, upper: f64) -> (Vec<f64>, Vec<f64>) {
-    /// Polynomials of degrees that are of use have no weight beyond.
-    const REACH: f64 = 20.0;
-    const PANELS: u32 = 64;
-    const SIZE: usize = 20;
-    let (lower, upper) = (lower.clamp(-REACH, REACH), upper.clamp(-REACH, REACH));
-    // Densities relative to the largest, so that a tail keeps its digits.
-    let peak = 0f64.clamp(lower, upper);
-    let rule = Family::Legendre.recurrence(SIZE);
-    let (places, shares) = gauss(&rule.diagonal, &rule.off_diagonal[..SIZE - 1]);
-    let half = 0.5 * (upper - lower) / f64::from(PANELS);
-    let points = (0..PANELS).flat_map(|panel| {
-        let center = half.mul_add(f64::from(2 * panel + 1), lower);
-        places.iter().zip(&shares).map(move |(place, share)| (half.mul_add(*place, center), *share))
-    });
-    let (nodes, mut weights): (Vec<f64>, Vec<f64>) =
-        points.map(|(x, share)| (x, share * (0.5 * (peak - x) * (peak + x)).exp())).unzip();
-    let sum: f64 = weights.iter().sum();
-    weights.iter_mut().for_each(|weight| *weight /= sum);
-    (nodes, weights)
-}
-
-/// Stieltjes' procedure: each coefficient is a mean under the weights, of the polynomials that are there already.
-fn stieltjes(nodes: &[f64], weights: &[f64], degree: usize) -> Recurrence {
-    let (mut diagonal, mut off_diagonal) = (Vec::with_capacity(degree), Vec::with_capacity(degree));
-    let (mut before, mut current) = (vec![0.0; nodes.len()], vec![1.0; nodes.len()]);
-    let mut coupling = 0.0;
-    for _ in 0..degree {
-        let mean: f64 = nodes.iter().zip(weights).zip(&current).map(|((x, w), value)| w * x * value * value).sum();
-        for ((before, value), x) in before.iter_mut().zip(&current).zip(nodes) {
-            *before = (x - mean) * value - coupling * *before;
-        }
-        coupling = before.iter().zip(weights).map(|(next, w)| w * next * next).sum::<f64>().sqrt();
-        before.iter_mut().for_each(|next| *next /= coupling);
-        std::mem::swap(&mut before, &mut current);
-        diagonal.push(mean);
-        off_diagonal.push(coupling);
-    }
-    Recurrence { diagonal, off_diagonal }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::polynomials::gauss;
 
     /// Rounding of recurrence and quadrature at degree 40 stays below this.
     const TOLERANCE: f64 = 1e-12;
@@ -210,26 +161,6 @@ mod tests {
                 assert!((entry - f64::from(i == j)).abs() < 1e-10, "E[φ_{i} φ_{j}] = {entry}");
             }
         }
-    }
-
-    #[test]
-    fn without_bounds_truncated_normal_polynomials_are_hermite_polynomials() {
-        let [own, hermite] =
-            [Family::TruncatedNormal { lower: f64::NEG_INFINITY, upper: f64::INFINITY }, Family::Hermite]
-                .map(|family| family.recurrence(20));
-        for (found, expected) in own.off_diagonal.iter().zip(&hermite.off_diagonal) {
-            assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
-        }
-        assert!(own.diagonal.iter().all(|mean| mean.abs() < 1e-12), "{:?}", own.diagonal);
-    }
-
-    /// The half-normal law: mean √(2/π), variance 1 − 2/π.
-    #[test]
-    fn the_first_coefficients_are_mean_and_standard_deviation() {
-        let half = Family::TruncatedNormal { lower: 0.0, upper: f64::INFINITY }.recurrence(2);
-        let two_over_pi = std::f64::consts::FRAC_2_PI;
-        assert!((half.diagonal[0] - two_over_pi.sqrt()).abs() < 1e-14);
-        assert!((half.off_diagonal[0] - (1.0 - two_over_pi).sqrt()).abs() < 1e-14);
     }
 
     #[test]

@@ -79,7 +79,7 @@ impl CriticalValues {
     /// Every change of stability along the input, in order, with the mode and the kind of instability on its unstable
     /// side.
     pub fn crossings(&self) -> Vec<Crossing> {
-        self.crossings.list(&self.labels, self.domain)
+        self.crossings.list(&self.labels, &self.domain)
     }
 
     /// The critical value that a share `level` ∈ \[0, 1\] of all samples does not exceed, in the input's own unit, to
@@ -114,7 +114,7 @@ impl CriticalValues {
     }
 
     fn physical(&self, share: f64) -> f64 {
-        physical(self.domain, share)
+        physical(&self.domain, share)
     }
 
     fn add(&mut self, part: &Part) {
@@ -130,7 +130,7 @@ impl CriticalValues {
 }
 
 /// The value of an input at this share of its domain: of its interval, or of what is probable where it is not uniform.
-pub(super) fn physical(domain: Marginal, share: f64) -> f64 {
+pub(super) fn physical(domain: &Marginal, share: f64) -> f64 {
     let [lower, upper] = domain.support();
     match domain {
         Marginal::Uniform(_) => (lower + share * (upper - lower)).clamp(lower, upper),
@@ -206,7 +206,7 @@ pub fn critical_values_in(
 ) -> Result<CriticalValues, EvalError> {
     let inputs = surrogate.inputs.inputs();
     let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
-    let domain = chosen.marginal;
+    let domain = chosen.marginal.clone();
     let plan = Plan::new(surrogate);
     let mut values = CriticalValues::new(samples, domain, surrogate.labels());
     in_chunks(

@@ -78,7 +78,7 @@ impl Crossings {
     }
 
     /// All of them, in the order of crossings, of equal ones the most frequent first.
-    pub(super) fn list(&self, labels: &[Label], domain: Marginal) -> Vec<Crossing> {
+    pub(super) fn list(&self, labels: &[Label], domain: &Marginal) -> Vec<Crossing> {
         let crossing = |(key, values): (&CrossingKey, &Values)| Crossing {
             order: key.order,
             loses: key.loses,
@@ -92,7 +92,7 @@ impl Crossings {
             mean: physical(domain, values.shares.mean()),
             range: [values.shares.minimum(), values.shares.maximum()].map(|share| physical(domain, share)),
             values: values.clone(),
-            domain,
+            domain: domain.clone(),
         };
         let mut list: Vec<Crossing> = self.found.iter().map(crossing).collect();
         list.sort_by(|a, b| a.order.cmp(&b.order).then(b.samples.cmp(&a.samples)));
@@ -105,6 +105,6 @@ impl Crossing {
     /// domain's width.
     pub fn quantile(&self, level: f64) -> f64 {
         let share = quantile_in_bins(&self.values.counts, level * self.samples as f64, &self.values.shares);
-        share.map_or(self.range[1], |share| physical(self.domain, share))
+        share.map_or(self.range[1], |share| physical(&self.domain, share))
     }
 }

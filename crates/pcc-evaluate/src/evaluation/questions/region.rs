@@ -23,7 +23,7 @@ impl Region {
     /// The whole domain.
     pub fn whole(inputs: &InputSpace) -> Self {
         let dimension = inputs.dimension();
-        let germs = inputs.inputs().iter().map(|input| input.marginal.germ()).collect();
+        let germs = inputs.inputs().iter().map(|input| input.marginal.germ().clone()).collect();
         Self { lower: vec![-1.0; dimension], width: vec![2.0; dimension], germs }
     }
 
@@ -61,16 +61,20 @@ impl Region {
         for lane in 0..BLOCK_POINTS {
             units.0[lane] = width.mul_add(units.0[lane], lower);
         }
-        match self.germs[input] {
+        match &self.germs[input] {
             Germ::Uniform => {}
             Germ::Normal => {
                 for lane in 0..BLOCK_POINTS {
                     units.0[lane] = Germ::Normal.at(units.0[lane]);
                 }
             }
-            Germ::TruncatedNormal(cut) => {
+            Germ::Own(own) => {
+                // Normal scores in lanes, then the pieces, which are looked up one by one.
                 for lane in 0..BLOCK_POINTS {
-                    units.0[lane] = Germ::TruncatedNormal(cut).at(units.0[lane]);
+                    units.0[lane] = Germ::Normal.at(units.0[lane]);
+                }
+                for lane in 0..BLOCK_POINTS {
+                    units.0[lane] = own.at_score(units.0[lane]);
                 }
             }
         }
@@ -157,6 +161,6 @@ fn coordinate(inputs: &InputSpace, input: usize, value: f64) -> Result<f64, Surv
     }
     // No farther out than random values come.
     const OUTERMOST: f64 = 1.0 - f64::EPSILON / 2.0;
-    let most = if chosen.marginal.germ() == Germ::Uniform { 1.0 } else { OUTERMOST };
+    let most = if chosen.marginal.is_divisible() { 1.0 } else { OUTERMOST };
     Ok(chosen.marginal.centred_probability(value).clamp(-most, most))
 }

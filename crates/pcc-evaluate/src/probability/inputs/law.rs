@@ -1,15 +1,21 @@
 //! What a law of an input has to know.
 
 use super::germ::Germ;
+use super::marginal::Polynomials;
+use super::pieces::Pieces;
 use super::uniform::MarginalError;
+use std::fmt::Debug;
 
 /// A law of an input: a monotone function x(ξ) of a standardized variable.
-pub(super) trait Law {
+pub(super) trait Law: Debug + Send + Sync {
+    /// Its name in study files and tables.
+    fn name(&self) -> &'static str;
+
     /// Parameters that say which one of its laws it is, with their names in study files, in the order of these files.
     fn parameters(&self) -> Vec<(&'static str, f64)>;
 
     /// Its standardized variable.
-    fn germ(&self) -> Germ;
+    fn germ(&self) -> &Germ;
 
     /// x(ξ), in the input's own unit.
     fn physical(&self, xi: f64) -> f64;
@@ -22,6 +28,25 @@ pub(super) trait Law {
 
     /// Between what values it has all its probability; infinite where it has no bound.
     fn support(&self) -> [f64; 2];
+
+    /// The same map as files keep it.
+    fn transform(&self) -> Transform<'_>;
+
+    /// The polynomials that a study has asked for, if there was a choice.
+    fn chosen(&self) -> Option<Polynomials> {
+        None
+    }
+}
+
+/// A map from the standardized variable, or from the normal score, to the input's value.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Transform<'a> {
+    /// x = center + `half_width` ξ.
+    Affine { center: f64, half_width: f64 },
+    /// x = exp(center + `half_width` ξ).
+    Exponential { center: f64, half_width: f64 },
+    /// x = origin + scale q(z), q in pieces, z being the normal score.
+    Pieces { origin: f64, scale: f64, quantile: &'a Pieces },
 }
 
 /// A finite number.

@@ -1,7 +1,7 @@
 //! The law of a variable whose logarithm is uniform: of what is known to its order of magnitude.
 
 use super::germ::Germ;
-use super::law::{Law, positive};
+use super::law::{Law, Transform, positive};
 use super::uniform::{MarginalError, Uniform};
 
 /// x = exp(c + hξ) between two positive bounds.
@@ -29,12 +29,16 @@ impl LogUniform {
 }
 
 impl Law for LogUniform {
+    fn name(&self) -> &'static str {
+        "log-uniform"
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("lower", self.lower), ("upper", self.upper)]
     }
 
-    fn germ(&self) -> Germ {
-        Germ::Uniform
+    fn germ(&self) -> &Germ {
+        &Germ::Uniform
     }
 
     fn physical(&self, xi: f64) -> f64 {
@@ -51,5 +55,9 @@ impl Law for LogUniform {
 
     fn support(&self) -> [f64; 2] {
         [self.lower, self.upper]
+    }
+
+    fn transform(&self) -> Transform<'_> {
+        Transform::Exponential { center: self.logarithm.center(), half_width: self.logarithm.half_width() }
     }
 }

@@ -1,12 +1,10 @@
 //! The law of one input, whichever it is, and its map to the standardized variable of its polynomial family.
 
-use super::extremes::{Exponential, Gumbel, Weibull};
 use super::germ::Germ;
-use super::law::Law;
-use super::log_uniform::LogUniform;
-use super::normal::{LogNormal, Normal, TruncatedNormal};
+use super::law::{Law, Transform};
 use super::uniform::Uniform;
 use crate::polynomials::Family;
+use std::sync::Arc;
 
 /// Values that leave the domain by less than this share of its width still count as inside: bounds given as
 /// nominal × (1 ± spread) and the same bounds written out differ by an ulp.
@@ -17,59 +15,70 @@ const BOUNDARY: f64 = 1e-9;
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::probability::inputs::{Marginal, Normal, Uniform};
+/// use pcc_evaluate::probability::inputs::{Marginal, Parameters, Uniform};
 /// let friction = Marginal::Uniform(Uniform::new(0.0, 0.5)?);
 /// assert_eq!(friction.physical(0.5), 0.375);
 /// assert_eq!(friction.standardized(0.375), 0.5);
-/// let stiffness = Marginal::Normal(Normal::new(2e6, 1e5)?);
+/// let stiffness = Marginal::named("normal", &Parameters::of([("mean", 2e6), ("std", 1e5)]))?;
 /// assert_eq!(stiffness.physical(2.0), 2.2e6);
 /// # Ok::<(), pcc_evaluate::probability::inputs::MarginalError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Marginal {
     /// Uniform on an interval; the standardized variable is ξ = (x − centre)/half width ∈ [−1, 1].
     Uniform(Uniform),
-    /// Normal; ξ = (x − mean)/std.
-    Normal(Normal),
-    /// Its logarithm is normal.
-    LogNormal(LogNormal),
-    /// Normal between bounds.
-    TruncatedNormal(TruncatedNormal),
-    /// Its logarithm is uniform.
-    LogUniform(LogUniform),
-    /// Exponential.
-    Exponential(Exponential),
-    /// Weibull.
-    Weibull(Weibull),
-    /// Gumbel, of largest values.
-    Gumbel(Gumbel),
+    /// Another law; [`Marginal::named`] makes it.
+    Other(Other),
+}
+
+/// A law that is not uniform.
+#[derive(Debug, Clone)]
+pub struct Other(Arc<dyn Law>);
+
+/// Which polynomials an expansion has, where a law leaves the choice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Polynomials {
+    /// Orthonormal under the law itself: for models that are smooth functions of the input.
+    Own,
+    /// Of a standard normal variable of which the input is a function: for inputs over orders of magnitude.
+    Hermite,
+}
+
+impl Polynomials {
+    /// All, with their names in study files.
+    pub const ALL: [(&'static str, Self); 2] = [("own", Self::Own), ("hermite", Self::Hermite)];
+
+    /// Name in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::Hermite => "hermite",
+        }
+    }
+}
+
+/// The same law gives the same values, whatever polynomials are chosen.
+impl PartialEq for Marginal {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name() && self.parameters() == other.parameters()
+    }
 }
 
 impl Marginal {
+    pub(super) fn of(law: impl Law + 'static) -> Self {
+        Self::Other(Other(Arc::new(law)))
+    }
+
     fn law(&self) -> &dyn Law {
         match self {
             Self::Uniform(law) => law,
-            Self::Normal(law) => law,
-            Self::LogNormal(law) => law,
-            Self::TruncatedNormal(law) => law,
-            Self::LogUniform(law) => law,
-            Self::Exponential(law) => law,
-            Self::Weibull(law) => law,
-            Self::Gumbel(law) => law,
+            Self::Other(Other(law)) => &**law,
         }
     }
 
     /// Name of the law in study files and tables.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::Uniform(_) => "uniform",
-            Self::Normal(_) | Self::TruncatedNormal(_) => "normal",
-            Self::LogNormal(_) => "lognormal",
-            Self::LogUniform(_) => "log-uniform",
-            Self::Exponential(_) => "exponential",
-            Self::Weibull(_) => "weibull",
-            Self::Gumbel(_) => "gumbel",
-        }
+        self.law().name()
     }
 
     /// The parameters that say which one of its laws it is, with their names in study files, in the order of these
@@ -78,13 +87,29 @@ impl Marginal {
         self.law().parameters()
     }
 
+    /// The polynomials that were asked for, if there was a choice.
+    pub fn chosen_polynomials(&self) -> Option<Polynomials> {
+        self.law().chosen()
+    }
+
+    /// The map from the standardized variable as files keep it.
+    pub(crate) fn transform(&self) -> Transform<'_> {
+        self.law().transform()
+    }
+
     /// The law of its standardized variable.
     #[inline]
-    pub fn germ(&self) -> Germ {
+    pub fn germ(&self) -> &Germ {
         match self {
-            Self::Uniform(_) => Germ::Uniform,
-            other => other.law().germ(),
+            Self::Uniform(_) => &Germ::Uniform,
+            Self::Other(Other(law)) => law.germ(),
         }
+    }
+
+    /// Whether it is a uniform law, or one of which the logarithm is: all of its interval is equally likely to be
+    /// sampled, and can be divided.
+    pub fn is_divisible(&self) -> bool {
+        matches!(self.germ(), Germ::Uniform)
     }
 
     /// The polynomial family that is orthonormal in the standardized variable.
@@ -103,7 +128,7 @@ impl Marginal {
     pub fn physical(&self, standardized: f64) -> f64 {
         match self {
             Self::Uniform(uniform) => uniform.physical(standardized),
-            other => other.law().physical(standardized),
+            Self::Other(Other(law)) => law.physical(standardized),
         }
     }
 
@@ -118,7 +143,7 @@ impl Marginal {
     pub fn standardized(&self, physical: f64) -> f64 {
         match self {
             Self::Uniform(uniform) => uniform.standardized(physical),
-            other => other.law().standardized(physical),
+            Self::Other(Other(law)) => law.standardized(physical),
         }
     }
 
@@ -160,6 +185,7 @@ impl Marginal {
 
 #[cfg(test)]
 mod tests {
+    use super::super::parameters::Parameters;
     use super::*;
     use proptest::prelude::*;
 
@@ -177,23 +203,29 @@ mod tests {
         }
     }
 
-    /// One of each.
+    /// One of each, and some that are not easy.
     fn laws() -> Vec<Marginal> {
-        let normal = Normal::new(2.0, 0.5).unwrap();
-        let truncated = |lower, upper| Marginal::TruncatedNormal(TruncatedNormal::new(normal, lower, upper).unwrap());
-        vec![
-            Marginal::Uniform(Uniform::new(-1.0, 3.0).unwrap()),
-            Marginal::Normal(normal),
-            Marginal::LogNormal(LogNormal::new(2.0, 0.5).unwrap()),
-            truncated(Some(1.5), Some(2.6)),
-            truncated(Some(0.0), None),
-            truncated(None, Some(2.1)),
-            truncated(Some(1.0), Some(3.9)),
-            Marginal::LogUniform(LogUniform::new(0.1, 10.0).unwrap()),
-            Marginal::Exponential(Exponential::new(3.0).unwrap()),
-            Marginal::Weibull(Weibull::new(1.5, 2.0).unwrap()),
-            Marginal::Gumbel(Gumbel::with_moments(1.0, 0.2).unwrap()),
-        ]
+        type Given = &'static [(&'static str, f64)];
+        let given: [(&str, Given); 17] = [
+            ("uniform", &[("lower", -1.0), ("upper", 3.0)]),
+            ("normal", &[("mean", 2.0), ("std", 0.5)]),
+            ("lognormal", &[("mean", 2.0), ("std", 0.5)]),
+            ("normal", &[("mean", 2.0), ("std", 0.5), ("lower", 1.5), ("upper", 2.6)]),
+            ("normal", &[("mean", 2.0), ("std", 0.5), ("lower", 0.0)]),
+            ("normal", &[("mean", 2.0), ("std", 0.5), ("upper", 2.1)]),
+            ("normal", &[("mean", 2.0), ("std", 0.5), ("lower", 4.0)]),
+            ("log-uniform", &[("lower", 0.1), ("upper", 10.0)]),
+            ("exponential", &[("mean", 3.0)]),
+            ("weibull", &[("shape", 1.5), ("scale", 2.0)]),
+            ("gumbel", &[("mean", 1.0), ("std", 0.2)]),
+            ("gamma", &[("mean", 3.0), ("std", 1.0)]),
+            ("gamma", &[("shape", 0.5), ("scale", 2.0)]),
+            ("beta", &[("alpha", 2.0), ("beta", 3.0), ("lower", -1.0), ("upper", 4.0)]),
+            ("beta", &[("alpha", 0.5), ("beta", 0.7)]),
+            ("triangular", &[("lower", 1.0), ("mode", 1.5), ("upper", 3.0)]),
+            ("triangular", &[("lower", 1.0), ("mode", 3.0), ("upper", 3.0)]),
+        ];
+        given.map(|(name, given)| Marginal::named(name, &Parameters::of(given.iter().copied())).unwrap()).to_vec()
     }
 
     #[test]
@@ -227,15 +259,16 @@ mod tests {
             let mean = values.iter().sum::<f64>() / values.len() as f64;
             (mean, (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt())
         };
-        for law in [
-            Marginal::Normal(Normal::new(2.0, 0.5).unwrap()),
-            Marginal::LogNormal(LogNormal::new(2.0, 0.5).unwrap()),
-            Marginal::Gumbel(Gumbel::with_moments(2.0, 0.5).unwrap()),
-        ] {
+        for name in ["normal", "lognormal", "gumbel", "gamma", "beta"] {
+            let mut given = vec![("mean", 2.0), ("std", 0.5)];
+            if name == "beta" {
+                given.extend([("lower", 1.0), ("upper", 5.0)]);
+            }
+            let law = Marginal::named(name, &Parameters::of(given)).unwrap();
             let (mean, std) = moments(&law);
             assert!((mean - 2.0).abs() < 1e-4 && (std - 0.5).abs() < 1e-3, "{law:?}: {mean} {std}");
         }
-        let (mean, _) = moments(&Marginal::Exponential(Exponential::new(3.0).unwrap()));
+        let (mean, _) = moments(&Marginal::named("exponential", &Parameters::of([("mean", 3.0)])).unwrap());
         assert!((mean - 3.0).abs() < 1e-3, "{mean}");
     }
 
@@ -244,7 +277,7 @@ mod tests {
         for law in laws() {
             for end in law.support().into_iter().filter(|end| end.is_finite()) {
                 let xi = law.standardized(end);
-                assert!(xi.is_finite() || matches!(law, Marginal::LogNormal(_)), "{law:?} at {end}: {xi}");
+                assert!(xi.is_finite(), "{law:?} at {end}: {xi}");
             }
         }
     }

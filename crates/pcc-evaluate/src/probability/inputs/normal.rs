@@ -1,15 +1,19 @@
-//! The normal law, of a variable itself or of its logarithm, and between bounds.
+//! The normal law, also between bounds.
 
-use super::germ::{Cut, Germ};
-use super::law::{Law, finite, positive};
+use super::density::{Density, Place};
+use super::germ::Germ;
+use super::law::{Law, Transform, finite, positive};
+use super::marginal::Polynomials;
+use super::normal_quantile::distribution;
+use super::shaped::Draft;
 use super::uniform::MarginalError;
 
 /// A standard deviation below this share of the mean cannot be told from none.
-const LEAST_SPREAD: f64 = 1e3 * f64::EPSILON;
+pub(super) const LEAST_SPREAD: f64 = 1e3 * f64::EPSILON;
 
 /// N(mean, std²): x = mean + std ξ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Normal {
+pub(super) struct Normal {
     mean: f64,
     std: f64,
 }
@@ -27,15 +31,48 @@ impl Normal {
             false => Ok(Self { mean, std }),
         }
     }
+
+    /// The law on condition that the variable lies between bounds; mean and standard deviation are those before.
+    ///
+    /// # Errors
+    ///
+    /// Bounds must be finite, ascending, at least one, with a billionth of the probability between them.
+    pub fn between(self, lower: Option<f64>, upper: Option<f64>) -> Result<Draft, MarginalError> {
+        /// What is left between the bounds at least.
+        const LEAST_LEFT: f64 = 1e-9;
+        let lower = lower.map(|lower| finite("lower", lower)).transpose()?;
+        let upper = upper.map(|upper| finite("upper", upper)).transpose()?;
+        if let (Some(lower), Some(upper)) = (lower, upper)
+            && lower >= upper
+        {
+            return Err(MarginalError::Inverted { lower, upper });
+        }
+        let support = [lower.unwrap_or(f64::NEG_INFINITY), upper.unwrap_or(f64::INFINITY)];
+        let [below, above] = [self.standardized(support[0]), -self.standardized(support[1])].map(distribution);
+        let left = 1.0 - below - above;
+        // Not a number, if nothing is.
+        if left.is_nan() || left < LEAST_LEFT {
+            return Err(MarginalError::NothingLeft { share: left.max(0.0) });
+        }
+        let mut parameters = self.parameters();
+        parameters.extend(lower.map(|lower| ("lower", lower)));
+        parameters.extend(upper.map(|upper| ("upper", upper)));
+        let density = Box::new(Between { normal: self, support });
+        Ok(Draft { name: "normal", parameters, density, family: "own", default: Polynomials::Own })
+    }
 }
 
 impl Law for Normal {
+    fn name(&self) -> &'static str {
+        "normal"
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("mean", self.mean), ("std", self.std)]
     }
 
-    fn germ(&self) -> Germ {
-        Germ::Normal
+    fn germ(&self) -> &Germ {
+        &Germ::Normal
     }
 
     fn physical(&self, xi: f64) -> f64 {
@@ -53,130 +90,47 @@ impl Law for Normal {
     fn support(&self) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
-}
 
-/// The law of a variable whose logarithm is normal: x = exp(μ + σξ).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LogNormal {
-    mean: f64,
-    std: f64,
-    log_mean: f64,
-    log_std: f64,
-}
-
-impl LogNormal {
-    /// The lognormal law with this mean and standard deviation *of the variable itself*: σ² = ln(1 + std²/mean²),
-    /// μ = ln mean − σ²/2.
-    ///
-    /// # Errors
-    ///
-    /// Both must be positive, the standard deviation not lost beside the mean.
-    pub fn new(mean: f64, std: f64) -> Result<Self, MarginalError> {
-        let (mean, std) = (positive("mean", mean)?, positive("std", std)?);
-        let variance = (std / mean).powi(2).ln_1p();
-        let log_std = positive("std", variance.sqrt())?;
-        if std < LEAST_SPREAD * mean {
-            let expected = "large enough beside the mean";
-            return Err(MarginalError::Parameter { name: "std", value: std, expected });
-        }
-        Ok(Self { mean, std, log_mean: mean.ln() - 0.5 * variance, log_std })
+    fn transform(&self) -> Transform<'_> {
+        Transform::Affine { center: self.mean, half_width: self.std }
     }
 }
 
-impl Law for LogNormal {
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        vec![("mean", self.mean), ("std", self.std)]
-    }
-
-    fn germ(&self) -> Germ {
-        Germ::Normal
-    }
-
-    fn physical(&self, xi: f64) -> f64 {
-        self.log_std.mul_add(xi, self.log_mean).exp()
-    }
-
-    fn slope(&self, xi: f64) -> f64 {
-        self.log_std * self.physical(xi)
-    }
-
-    fn standardized(&self, x: f64) -> f64 {
-        (x.ln() - self.log_mean) / self.log_std
-    }
-
-    fn support(&self) -> [f64; 2] {
-        [0.0, f64::INFINITY]
-    }
-}
-
-/// The normal law between bounds, one or both: mean and standard deviation are those before truncation.
-///
-/// x = mean + std ξ, where ξ is a standard normal variable between the bounds, which has polynomials of its own:
-/// functions of x would be less smooth in a normal variable, and polynomials in that grow fast where it is seldom.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TruncatedNormal {
+/// A normal density between bounds.
+#[derive(Debug)]
+struct Between {
     normal: Normal,
-    lower: Option<f64>,
-    upper: Option<f64>,
-    cut: Cut,
+    support: [f64; 2],
 }
 
-/// What is left between the bounds at least: less cannot be resolved.
-const LEAST_LEFT: f64 = 1e-9;
-
-impl TruncatedNormal {
-    /// The law of `normal` on condition that the variable lies between these bounds.
-    ///
-    /// # Errors
-    ///
-    /// Bounds must be finite, ascending, at least one, with a billionth of the probability between them.
-    pub fn new(normal: Normal, lower: Option<f64>, upper: Option<f64>) -> Result<Self, MarginalError> {
-        let lower = lower.map(|lower| finite("lower", lower)).transpose()?;
-        let upper = upper.map(|upper| finite("upper", upper)).transpose()?;
-        if let (Some(lower), Some(upper)) = (lower, upper)
-            && lower >= upper
-        {
-            return Err(MarginalError::Inverted { lower, upper });
-        }
-        let cut = Cut::new(
-            lower.map_or(f64::NEG_INFINITY, |lower| normal.standardized(lower)),
-            upper.map_or(f64::INFINITY, |upper| normal.standardized(upper)),
-        );
-        let left = cut.left();
-        // Not a number, if nothing is.
-        if left >= LEAST_LEFT {
-            return Ok(Self { normal, lower, upper, cut });
-        }
-        Err(MarginalError::NothingLeft { share: left.max(0.0) })
-    }
-}
-
-impl Law for TruncatedNormal {
-    fn parameters(&self) -> Vec<(&'static str, f64)> {
-        let mut parameters = self.normal.parameters();
-        parameters.extend(self.lower.map(|lower| ("lower", lower)));
-        parameters.extend(self.upper.map(|upper| ("upper", upper)));
-        parameters
-    }
-
-    fn germ(&self) -> Germ {
-        Germ::TruncatedNormal(self.cut)
-    }
-
-    fn physical(&self, xi: f64) -> f64 {
-        let [lower, upper] = self.support();
-        self.normal.physical(xi).clamp(lower, upper)
-    }
-
-    fn slope(&self, xi: f64) -> f64 {
-        self.normal.slope(xi)
-    }
-
-    fn standardized(&self, x: f64) -> f64 {
-        self.normal.standardized(x)
-    }
-
+impl Density for Between {
     fn support(&self) -> [f64; 2] {
-        [self.lower.unwrap_or(f64::NEG_INFINITY), self.upper.unwrap_or(f64::INFINITY)]
+        self.support
+    }
+
+    fn log_density(&self, place: Place) -> f64 {
+        let [lower, upper] = self.support.map(|end| self.normal.standardized(end));
+        let std = self.normal.std;
+        // Of distances from the bound nearer to the mean, so that a tail keeps its digits.
+        if lower > 0.0 {
+            let d = place.from_lower / std;
+            -d * (0.5f64).mul_add(d, lower)
+        } else if upper < 0.0 {
+            let d = place.to_upper / std;
+            -d * (0.5f64).mul_add(d, -upper)
+        } else {
+            -0.5 * self.normal.standardized(place.x).powi(2)
+        }
+    }
+
+    fn typical(&self) -> [f64; 2] {
+        /// Two standard deviations on either side of the mean, or as much of a tail as lasts.
+        const FAR: f64 = 2.0;
+        let Normal { mean, std } = self.normal;
+        let [lower, upper] = self.support.map(|end| self.normal.standardized(end));
+        let from = lower.max(-FAR).min(upper - 1.0 / (1.0 + upper.abs()));
+        let to = upper.min(FAR).max(lower + 1.0 / (1.0 + lower.abs()));
+        let [from, to] = [from.max(lower), to.min(upper)];
+        [std.mul_add(0.5 * (from + to), mean), 0.25 * std * (to - from)]
     }
 }

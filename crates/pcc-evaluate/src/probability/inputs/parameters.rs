@@ -1,43 +1,96 @@
 //! Laws by name and parameters, as study files and surrogate files give them.
 
-use super::extremes::{Exponential, Gumbel, Weibull};
+use super::beta::beta;
+use super::extremes::{exponential, gumbel, gumbel_with_moments, weibull};
+use super::gamma::gamma;
 use super::log_uniform::LogUniform;
-use super::marginal::Marginal;
-use super::normal::{LogNormal, Normal, TruncatedNormal};
+use super::lognormal::LogNormal;
+use super::marginal::{Marginal, Polynomials};
+use super::normal::Normal;
+use super::pieces::Pieces;
+use super::shaped::Draft;
+use super::triangular::triangular;
 use super::uniform::{MarginalError, Uniform};
+use crate::polynomials::Recurrence;
 
-/// Parameters of a law, with their names in study files.
+/// Parameters of a law, with their names in study files, and the polynomials that are asked for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parameters<'a>(Vec<(&'a str, f64)>);
+pub struct Parameters<'a> {
+    numbers: Vec<(&'a str, f64)>,
+    polynomials: Option<Polynomials>,
+}
+
+/// A law: finished, or to be made from its density.
+enum Made {
+    Finished(Marginal),
+    Draft(Draft),
+}
+
+type Making = Result<Made, MarginalError>;
 
 /// A law's name, what its parameters can be, and how it is made of them; `None` if they are others.
-type Known = (&'static str, &'static str, fn(&Parameters<'_>) -> Option<Result<Marginal, MarginalError>>);
+type Known = (&'static str, &'static str, fn(&Parameters<'_>) -> Option<Making>);
 
 /// All laws, in the order in which they are listed.
-const LAWS: [Known; 7] = [
+const LAWS: [Known; 10] = [
     ("uniform", "lower and upper, or nominal and spread", uniform),
     ("normal", "mean and std, mean and cv, or nominal and cv; lower or upper or both cut it off", normal),
     ("lognormal", "mean and std, mean and cv, or median and cv, of the variable itself", lognormal),
+    ("gamma", "mean and std, mean and cv, or shape and scale", |given| {
+        let law = match given.exactly(["shape", "scale"]) {
+            Some([shape, scale]) => gamma(shape, scale),
+            // The variance is mean · scale.
+            None => given.moments()?.and_then(|[mean, std]| gamma((mean / std).powi(2), std * (std / mean))),
+        };
+        Some(law.map(Made::Draft))
+    }),
+    ("beta", "alpha and beta, or mean and std; lower and upper if they are not 0 and 1", of_beta),
+    ("triangular", "lower, mode and upper", |given| {
+        let [lower, mode, upper] = given.exactly(["lower", "mode", "upper"])?;
+        Some(triangular(lower, mode, upper).map(Made::Draft))
+    }),
     ("log-uniform", "lower and upper", |given| {
-        given.exactly(["lower", "upper"]).map(|[lower, upper]| LogUniform::new(lower, upper).map(Marginal::LogUniform))
+        let [lower, upper] = given.exactly(["lower", "upper"])?;
+        Some(LogUniform::new(lower, upper).map(Marginal::of).map(Made::Finished))
     }),
-    ("exponential", "mean", |given| {
-        given.exactly(["mean"]).map(|[mean]| Exponential::new(mean).map(Marginal::Exponential))
-    }),
+    ("exponential", "mean", |given| given.exactly(["mean"]).map(|[mean]| exponential(mean).map(Made::Draft))),
     ("weibull", "shape and scale", |given| {
-        given.exactly(["shape", "scale"]).map(|[shape, scale]| Weibull::new(shape, scale).map(Marginal::Weibull))
+        given.exactly(["shape", "scale"]).map(|[shape, scale]| weibull(shape, scale).map(Made::Draft))
     }),
-    ("gumbel", "location and scale, or mean and std", gumbel),
+    ("gumbel", "location and scale, or mean and std", |given| {
+        let law = match given.exactly(["location", "scale"]) {
+            Some([location, scale]) => gumbel(location, scale),
+            None => given.exactly(["mean", "std"]).map(|[mean, std]| gumbel_with_moments(mean, std))?,
+        };
+        Some(law.map(Made::Draft))
+    }),
 ];
+
+/// A law as files keep it that were made from its density.
+pub(crate) struct Stored {
+    /// x = origin + scale q(z).
+    pub map: [f64; 2],
+    /// q, z being the normal score.
+    pub quantile: Pieces,
+    /// Of which variable the polynomials are.
+    pub polynomials: Polynomials,
+    /// Their recurrence.
+    pub recurrence: Recurrence,
+}
 
 impl<'a> Parameters<'a> {
     /// These names with these values.
     pub fn of(given: impl IntoIterator<Item = (&'a str, f64)>) -> Self {
-        Self(given.into_iter().collect())
+        Self { numbers: given.into_iter().collect(), polynomials: None }
+    }
+
+    /// With these polynomials, where a law leaves the choice.
+    pub fn with_polynomials(self, polynomials: Option<Polynomials>) -> Self {
+        Self { polynomials, ..self }
     }
 
     fn get(&self, name: &str) -> Option<f64> {
-        self.0.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+        self.numbers.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
     }
 
     /// The values of these names, if they are all that is given.
@@ -46,11 +99,24 @@ impl<'a> Parameters<'a> {
         for (value, name) in values.iter_mut().zip(names) {
             *value = self.get(name)?;
         }
-        (self.0.len() == N).then_some(values)
+        (self.numbers.len() == N).then_some(values)
     }
 
     fn without(&self, names: &[&str]) -> Self {
-        Self(self.0.iter().copied().filter(|(name, _)| !names.contains(name)).collect())
+        let numbers = self.numbers.iter().copied().filter(|(name, _)| !names.contains(name)).collect();
+        Self { numbers, polynomials: self.polynomials }
+    }
+
+    /// Mean and standard deviation.
+    fn moments(&self) -> Option<Result<[f64; 2], MarginalError>> {
+        if let Some([mean, std]) = self.exactly(["mean", "std"]) {
+            return Some(Ok([mean, std]));
+        }
+        let [mean, cv] = self.exactly(["mean", "cv"]).or_else(|| self.exactly(["nominal", "cv"]))?;
+        Some(match mean == 0.0 {
+            true => Err(MarginalError::NoScatter { cv }),
+            false => Ok([mean, cv * mean.abs()]),
+        })
     }
 }
 
@@ -76,58 +142,89 @@ impl Marginal {
     /// # Ok::<(), pcc_evaluate::probability::inputs::MarginalError>(())
     /// ```
     pub fn named(name: &str, given: &Parameters<'_>) -> Result<Self, MarginalError> {
-        let Some((law, expected, make)) = LAWS.iter().find(|(known, ..)| *known == name) else {
-            let known = Self::names().collect::<Vec<_>>().join(", ");
-            return Err(MarginalError::Unknown { found: name.to_owned(), known });
+        let (law, made) = made(name, given)?;
+        let marginal = match made {
+            Made::Finished(marginal) => marginal,
+            Made::Draft(draft) => draft.law(given.polynomials)?,
         };
-        make(given).unwrap_or(Err(MarginalError::Form { law, expected }))
+        match given.polynomials.is_some() && marginal.chosen_polynomials().is_none() {
+            true => Err(MarginalError::NoChoice { law }),
+            false => Ok(marginal),
+        }
+    }
+
+    /// The same with the map that a file has, where that was made from the density.
+    ///
+    /// # Errors
+    ///
+    /// A sentence: no such law, or not its map.
+    pub(crate) fn stored(name: &str, given: &Parameters<'_>, stored: Stored) -> Result<Self, String> {
+        let given = given.clone().with_polynomials(Some(stored.polynomials));
+        match made(name, &given).map_err(|error| error.to_string())? {
+            (law, Made::Finished(_)) => Err(format!("a {law} law has no pieces")),
+            (_, Made::Draft(draft)) => {
+                let Stored { map, quantile, polynomials, recurrence } = stored;
+                draft.stored(map, quantile, polynomials, recurrence).map_err(str::to_owned)
+            }
+        }
     }
 }
 
-fn uniform(given: &Parameters<'_>) -> Option<Result<Marginal, MarginalError>> {
+fn made(name: &str, given: &Parameters<'_>) -> Result<(&'static str, Made), MarginalError> {
+    let Some((law, expected, make)) = LAWS.iter().find(|(known, ..)| *known == name) else {
+        let known = Marginal::names().collect::<Vec<_>>().join(", ");
+        return Err(MarginalError::Unknown { found: name.to_owned(), known });
+    };
+    let made = make(given).unwrap_or(Err(MarginalError::Form { law, expected }))?;
+    Ok((law, made))
+}
+
+fn uniform(given: &Parameters<'_>) -> Option<Making> {
     let [lower, upper] = match given.exactly(["nominal", "spread"]) {
         Some([nominal, spread]) => [nominal * (1.0 - spread), nominal * (1.0 + spread)],
         None => given.exactly(["lower", "upper"])?,
     };
-    Some(Uniform::new(lower, upper).map(Marginal::Uniform))
+    Some(Uniform::new(lower, upper).map(Marginal::Uniform).map(Made::Finished))
 }
 
-/// Mean and standard deviation.
-fn moments(given: &Parameters<'_>) -> Option<Result<[f64; 2], MarginalError>> {
-    if let Some([mean, std]) = given.exactly(["mean", "std"]) {
-        return Some(Ok([mean, std]));
-    }
-    let [mean, cv] = given.exactly(["mean", "cv"]).or_else(|| given.exactly(["nominal", "cv"]))?;
-    Some(match mean == 0.0 {
-        true => Err(MarginalError::NoScatter { cv }),
-        false => Ok([mean, cv * mean.abs()]),
-    })
-}
-
-fn normal(given: &Parameters<'_>) -> Option<Result<Marginal, MarginalError>> {
+fn normal(given: &Parameters<'_>) -> Option<Making> {
     let bounds = [given.get("lower"), given.get("upper")];
-    let law = moments(&given.without(&["lower", "upper"]))?.and_then(|[mean, std]| Normal::new(mean, std));
+    let law = given.without(&["lower", "upper"]).moments()?.and_then(|[mean, std]| Normal::new(mean, std));
     Some(law.and_then(|law| match bounds {
-        [None, None] => Ok(Marginal::Normal(law)),
-        [lower, upper] => TruncatedNormal::new(law, lower, upper).map(Marginal::TruncatedNormal),
+        [None, None] => Ok(Made::Finished(Marginal::of(law))),
+        [lower, upper] => law.between(lower, upper).map(Made::Draft),
     }))
 }
 
-fn lognormal(given: &Parameters<'_>) -> Option<Result<Marginal, MarginalError>> {
+fn lognormal(given: &Parameters<'_>) -> Option<Making> {
     let moments = match given.exactly(["median", "cv"]) {
         // The mean of a lognormal variable is median √(1 + cv²).
         Some([median, cv]) => Ok([median * cv.hypot(1.0), cv * median * cv.hypot(1.0)]),
-        None => moments(given)?,
+        None => given.moments()?,
     };
-    Some(moments.and_then(|[mean, std]| LogNormal::new(mean, std)).map(Marginal::LogNormal))
+    let law = moments.and_then(|[mean, std]| LogNormal::new(mean, std, given.polynomials));
+    Some(law.map(|law| match law.polynomials() {
+        Polynomials::Own => Made::Draft(law.of_its_own()),
+        Polynomials::Hermite => Made::Finished(Marginal::of(law)),
+    }))
 }
 
-fn gumbel(given: &Parameters<'_>) -> Option<Result<Marginal, MarginalError>> {
-    let law = match given.exactly(["location", "scale"]) {
-        Some([location, scale]) => Gumbel::new(location, scale),
-        None => given.exactly(["mean", "std"]).map(|[mean, std]| Gumbel::with_moments(mean, std))?,
+fn of_beta(given: &Parameters<'_>) -> Option<Making> {
+    let [lower, upper] = match [given.get("lower"), given.get("upper")] {
+        [None, None] => [0.0, 1.0],
+        [lower, upper] => [lower?, upper?],
     };
-    Some(law.map(Marginal::Gumbel))
+    let shapes = given.without(&["lower", "upper"]);
+    let law = match shapes.exactly(["alpha", "beta"]) {
+        Some([alpha, beta_]) => beta(alpha, beta_, [lower, upper]),
+        None => shapes.moments()?.and_then(|[mean, std]| {
+            // α + β = m (1 − m)/s² − 1, of mean and standard deviation in units of the interval.
+            let (mean, std) = ((mean - lower) / (upper - lower), std / (upper - lower));
+            let sum = mean * (1.0 - mean) / (std * std) - 1.0;
+            beta(mean * sum, (1.0 - mean) * sum, [lower, upper])
+        }),
+    };
+    Some(law.map(Made::Draft))
 }
 
 #[cfg(test)]
@@ -146,6 +243,10 @@ mod tests {
             ("exponential", vec![("mean", 3.0)]),
             ("weibull", vec![("shape", 1.5), ("scale", 2.0)]),
             ("gumbel", vec![("mean", 2.0), ("std", 0.3)]),
+            ("gamma", vec![("mean", 2.0), ("cv", 0.3)]),
+            ("beta", vec![("alpha", 2.0), ("beta", 0.5)]),
+            ("beta", vec![("mean", 2.0), ("std", 0.5), ("lower", 1.0), ("upper", 4.0)]),
+            ("triangular", vec![("lower", 2.0), ("mode", 2.5), ("upper", 4.0)]),
         ] {
             let law = Marginal::named(name, &Parameters::of(parameters)).unwrap();
             assert_eq!(law.name(), name);
@@ -156,8 +257,21 @@ mod tests {
 
     #[test]
     fn a_median_is_the_middle() {
-        let law = Marginal::named("lognormal", &Parameters::of([("median", 2.0), ("cv", 0.3)])).unwrap();
-        assert!((law.physical(0.0) - 2.0).abs() < 1e-14);
+        for polynomials in [None, Some(Polynomials::Own), Some(Polynomials::Hermite)] {
+            let given = Parameters::of([("median", 2.0), ("cv", 0.3)]).with_polynomials(polynomials);
+            let law = Marginal::named("lognormal", &given).unwrap();
+            assert!((law.at_centred_probability(0.0) - 2.0).abs() < 1e-13);
+            assert_eq!(law.chosen_polynomials(), polynomials);
+        }
+    }
+
+    #[test]
+    fn polynomials_are_chosen_where_there_is_a_choice() {
+        let given = Parameters::of([("mean", 2.0), ("std", 0.3)]).with_polynomials(Some(Polynomials::Hermite));
+        let gamma = Marginal::named("gamma", &given).unwrap();
+        assert_eq!(gamma.family(), crate::polynomials::Family::Hermite);
+        let refused = Marginal::named("normal", &given).unwrap_err();
+        assert_eq!(refused, MarginalError::NoChoice { law: "normal" });
     }
 
     #[test]

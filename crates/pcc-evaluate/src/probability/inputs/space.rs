@@ -116,8 +116,8 @@ impl InputSpace {
     /// Whether names and distributions are the same in the same order: then a point means the same in both, whatever
     /// units and labels say.
     pub fn is_same_as(&self, other: &Self) -> bool {
-        let law = |input: &Input| (input.name.clone(), input.marginal);
-        self.0.iter().map(law).eq(other.0.iter().map(law))
+        let is_same = |(a, b): (&Input, &Input)| a.name == b.name && a.marginal == b.marginal;
+        self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(is_same)
     }
 
     /// The same inputs with these units and labels in turn.

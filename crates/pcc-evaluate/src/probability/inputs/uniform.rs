@@ -1,7 +1,7 @@
 //! The uniform law.
 
 use super::germ::Germ;
-use super::law::Law;
+use super::law::{Law, Transform};
 use thiserror::Error;
 
 /// Why a distribution's parameters are unusable.
@@ -63,6 +63,18 @@ pub enum MarginalError {
         /// The coefficient.
         cv: f64,
     },
+    /// A law has one kind of polynomials.
+    #[error("a {law} law leaves no choice of polynomials; remove the key")]
+    NoChoice {
+        /// Its name.
+        law: &'static str,
+    },
+    /// A law's quantiles cannot be computed to all digits.
+    #[error("a {law} law with these parameters cannot be resolved in double precision; move them away from extremes")]
+    Shape {
+        /// Its name.
+        law: &'static str,
+    },
     /// The bounds of a truncated law leave next to nothing.
     #[error("the bounds leave {share:e} of the probability; move them or the mean")]
     NothingLeft {
@@ -121,12 +133,16 @@ impl Uniform {
 }
 
 impl Law for Uniform {
+    fn name(&self) -> &'static str {
+        "uniform"
+    }
+
     fn parameters(&self) -> Vec<(&'static str, f64)> {
         vec![("lower", self.lower), ("upper", self.upper)]
     }
 
-    fn germ(&self) -> Germ {
-        Germ::Uniform
+    fn germ(&self) -> &Germ {
+        &Germ::Uniform
     }
 
     #[inline]
@@ -145,6 +161,10 @@ impl Law for Uniform {
 
     fn support(&self) -> [f64; 2] {
         [self.lower, self.upper]
+    }
+
+    fn transform(&self) -> Transform<'_> {
+        Transform::Affine { center: self.center(), half_width: self.half_width() }
     }
 }
 

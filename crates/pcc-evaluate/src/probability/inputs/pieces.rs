@@ -1,0 +1,246 @@
+//! A rising function of a standard normal variable in pieces, each a polynomial: how the quantiles of a law are kept in
+//! files, so that nobody who reads them needs the law's special functions.
+
+use super::root;
+
+/// Degree of every piece.
+pub(crate) const DEGREE: usize = 12;
+
+/// Pieces cover normal scores from −8.5 to 8.5; random numbers reach 8.3. Beyond, the ends count.
+pub(crate) const REACH: f64 = 8.5;
+
+/// Equal cells, of which each knows its first piece. Ends of pieces are ends of cells, but for kinks.
+const CELLS: usize = 1 << 10;
+
+/// Cells of the widest pieces.
+const WIDEST: usize = 64;
+
+/// Errors that are accepted, relative to the largest value of a piece; values below [`NOTHING`] are as good as zero.
+pub(super) const TOLERANCE: f64 = 2e-14;
+const NOTHING: f64 = 1e-280;
+
+/// One piece: Σ c_k t^k with t = (z − centre) · `inverse_half_width` ∈ \[−1, 1\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    end: f64,
+    center: f64,
+    inverse_half_width: f64,
+    coefficients: [f64; DEGREE + 1],
+}
+
+impl Piece {
+    fn new([from, to]: [f64; 2], coefficients: [f64; DEGREE + 1]) -> Self {
+        Self { end: to, center: 0.5 * (from + to), inverse_half_width: 2.0 / (to - from), coefficients }
+    }
+
+    #[inline(always)]
+    fn value(&self, z: f64) -> f64 {
+        let t = (z - self.center) * self.inverse_half_width;
+        let c = &self.coefficients;
+        let mut value = c[DEGREE];
+        for k in (0..DEGREE).rev() {
+            value = value.mul_add(t, c[k]);
+        }
+        value
+    }
+
+    fn slope(&self, z: f64) -> f64 {
+        let t = (z - self.center) * self.inverse_half_width;
+        let terms = self.coefficients.iter().enumerate().skip(1).rev();
+        self.inverse_half_width * terms.fold(0.0, |sum: f64, (k, c)| sum.mul_add(t, k as f64 * c))
+    }
+}
+
+/// The function.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Pieces {
+    pieces: Vec<Piece>,
+    /// The first piece of each cell.
+    first: Vec<u16>,
+}
+
+impl Pieces {
+    /// Pieces of a rising function that is analytic between `kinks`, as many as it takes.
+    pub fn of(function: impl Fn(f64) -> f64, kinks: &[f64]) -> Self {
+        let mut pieces = Vec::new();
+        for first in (0..CELLS).step_by(WIDEST) {
+            let ends = [edge(first), edge(first + WIDEST)];
+            let inner = kinks.iter().copied().filter(|kink| ends[0] < *kink && *kink < ends[1]);
+            let breaks: Vec<f64> = std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect();
+            // Between kinks halves are no ends of cells, which costs steps, not correctness.
+            breaks.windows(2).for_each(|ends| divide(&function, [ends[0], ends[1]], &mut pieces));
+        }
+        Self::with_cells(pieces)
+    }
+
+    /// Pieces between `breaks` with these coefficients; a sentence if they are no rising function on all scores.
+    pub fn stored(breaks: &[f64], coefficients: &[Vec<f64>]) -> Result<Self, &'static str> {
+        let is_cover = breaks.len() == coefficients.len() + 1
+            && (breaks.first(), breaks.last()) == (Some(&-REACH), Some(&REACH))
+            && breaks.is_sorted_by(|a, b| a < b)
+            && coefficients.len() <= usize::from(u16::MAX);
+        if !is_cover {
+            return Err("its pieces do not cover all normal scores");
+        }
+        let mut pieces = Vec::with_capacity(coefficients.len());
+        for (ends, coefficients) in breaks.windows(2).zip(coefficients) {
+            let coefficients = coefficients.as_slice().try_into().map_err(|_| "a piece has not 13 coefficients")?;
+            pieces.push(Piece::new([ends[0], ends[1]], coefficients));
+        }
+        let pieces = Self::with_cells(pieces);
+        if pieces.is_rising() { Ok(pieces) } else { Err("its pieces are not finite and rising") }
+    }
+
+    fn with_cells(pieces: Vec<Piece>) -> Self {
+        let first_of = |cell: usize| pieces.partition_point(|piece| piece.end <= edge(cell)).min(pieces.len() - 1);
+        let first = (0..CELLS).map(|cell| first_of(cell) as u16).collect();
+        Self { pieces, first }
+    }
+
+    /// Where pieces begin and end.
+    pub fn breaks(&self) -> Vec<f64> {
+        std::iter::once(-REACH).chain(self.pieces.iter().map(|piece| piece.end)).collect()
+    }
+
+    /// Coefficients of each piece, of t ∈ \[−1, 1\], constant first.
+    pub fn coefficients(&self) -> impl Iterator<Item = &[f64]> {
+        self.pieces.iter().map(|piece| piece.coefficients.as_slice())
+    }
+
+    /// The value at a normal score.
+    #[inline(always)]
+    pub fn at(&self, z: f64) -> f64 {
+        let z = z.clamp(-REACH, REACH);
+        self.piece(z).value(z)
+    }
+
+    /// Its derivative there.
+    pub fn slope(&self, z: f64) -> f64 {
+        let z = z.clamp(-REACH, REACH);
+        self.piece(z).slope(z)
+    }
+
+    /// The normal score of a value: the end nearest to it, if it has none.
+    pub fn score(&self, value: f64) -> f64 {
+        let at = self.pieces.partition_point(|piece| piece.value(piece.end) < value).min(self.pieces.len() - 1);
+        let piece = &self.pieces[at];
+        let start = 2.0f64.mul_add(piece.center, -piece.end);
+        root::rising(|z| piece.value(z) - value, |z| piece.slope(z), [start, piece.end])
+    }
+
+    #[inline(always)]
+    fn piece(&self, z: f64) -> &Piece {
+        const PER_UNIT: f64 = CELLS as f64 / (2.0 * REACH);
+        let cell = ((z + REACH) * PER_UNIT) as usize;
+        let mut at = usize::from(self.first[cell.min(CELLS - 1)]);
+        while self.pieces[at].end < z && at + 1 < self.pieces.len() {
+            at += 1;
+        }
+        &self.pieces[at]
+    }
+
+    /// Whether values at places inside all pieces are finite and never fall.
+    fn is_rising(&self) -> bool {
+        const PLACES: u32 = 8;
+        /// Rounding of neighbouring pieces.
+        const ROUNDING: f64 = 1e-10;
+        let mut last = f64::NEG_INFINITY;
+        self.pieces.iter().all(|piece| {
+            (0..=PLACES).all(|k| {
+                let t = f64::from(2 * k) / f64::from(PLACES) - 1.0;
+                let value = piece.value(piece.center + t / piece.inverse_half_width);
+                let is_rising = value.is_finite() && value >= last - ROUNDING * value.abs().max(last.abs());
+                last = value;
+                is_rising
+            })
+        })
+    }
+}
+
+/// Where cell number `cell` begins.
+fn edge(cell: usize) -> f64 {
+    (cell as f64).mul_add(2.0 * REACH / CELLS as f64, -REACH)
+}
+
+/// One piece between `ends`, or halves of it as long as that is not exact enough and they are worth it.
+fn divide(function: &impl Fn(f64) -> f64, ends: [f64; 2], pieces: &mut Vec<Piece>) {
+    const NARROWEST: f64 = 2.0 * REACH / CELLS as f64;
+    const TESTS: usize = 9;
+    let piece = fitted(function, ends);
+    let width = ends[1] - ends[0];
+    let tests = (0..TESTS).map(|k| ends[0] + width * (k as f64 + 0.5) / TESTS as f64);
+    let largest = ends.map(|z| function(z).abs()).into_iter().fold(0.0, f64::max);
+    let is_exact = |z: f64| (piece.value(z) - function(z)).abs() <= TOLERANCE * largest.max(NOTHING / TOLERANCE);
+    if width <= NARROWEST || tests.into_iter().all(is_exact) {
+        pieces.push(piece);
+        return;
+    }
+    let middle = 0.5 * (ends[0] + ends[1]);
+    divide(function, [ends[0], middle], pieces);
+    divide(function, [middle, ends[1]], pieces);
+}
+
+/// The polynomial through the values at Chebyshev's nodes.
+fn fitted(function: &impl Fn(f64) -> f64, [from, to]: [f64; 2]) -> Piece {
+    const COUNT: usize = DEGREE + 1;
+    let (center, half) = (0.5 * (from + to), 0.5 * (to - from));
+    let angle = |j: usize| std::f64::consts::PI * (j as f64 + 0.5) / COUNT as f64;
+    let values: [f64; COUNT] = std::array::from_fn(|j| function(half.mul_add(angle(j).cos(), center)));
+    // T_0, T_1, … by powers of t, and the sum of all with their coefficients.
+    let (mut before, mut current) = ([0.0; COUNT], [0.0; COUNT]);
+    current[0] = 1.0;
+    let mut coefficients = [0.0; COUNT];
+    for k in 0..COUNT {
+        let sum: f64 = values.iter().enumerate().map(|(j, value)| value * (k as f64 * angle(j)).cos()).sum();
+        let factor = if k == 0 { 1.0 } else { 2.0 } / COUNT as f64 * sum;
+        coefficients.iter_mut().zip(&current).for_each(|(sum, power)| *sum += factor * power);
+        let twice = if k == 0 { 1.0 } else { 2.0 };
+        let next = std::array::from_fn(|p| if p == 0 { 0.0 } else { twice * current[p - 1] } - before[p]);
+        (before, current) = (current, next);
+    }
+    Piece::new([from, to], coefficients)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smooth_functions_are_kept_to_rounding_and_undone() {
+        let function = |z: f64| (0.7 * z).exp();
+        let pieces = Pieces::of(function, &[]);
+        for k in -840..=840 {
+            let z = f64::from(k) / 100.0 + 1e-3;
+            assert!((pieces.at(z) - function(z)).abs() < 1e-13 * function(z), "{z}");
+            assert!((pieces.slope(z) - 0.7 * function(z)).abs() < 1e-10 * function(z), "{z}");
+            assert!((pieces.score(function(z)) - z).abs() < 1e-12, "{z}");
+        }
+        assert_eq!((pieces.at(-20.0), pieces.at(20.0)), (pieces.at(-REACH), pieces.at(REACH)));
+        assert!(pieces.pieces.len() < 40, "{}", pieces.pieces.len());
+    }
+
+    #[test]
+    fn kinks_are_ends_of_pieces() {
+        let function = |z: f64| if z < 0.3 { z } else { 0.3 + 2.0 * (z - 0.3) };
+        let pieces = Pieces::of(function, &[0.3]);
+        assert!(pieces.pieces.len() <= 17);
+        for z in [-8.5, -1.0, 0.2999, 0.3, 0.3001, 0.5, 8.5] {
+            assert!((pieces.at(z) - function(z)).abs() < 1e-13, "{z}");
+        }
+    }
+
+    #[test]
+    fn what_is_stored_is_the_same_and_what_falls_is_refused() {
+        let pieces = Pieces::of(|z| (0.2 * z).sinh(), &[]);
+        let mut coefficients: Vec<Vec<f64>> = pieces.coefficients().map(<[f64]>::to_vec).collect();
+        assert_eq!(Pieces::stored(&pieces.breaks(), &coefficients), Ok(pieces.clone()));
+        coefficients[3][1] = -1.0;
+        assert!(Pieces::stored(&pieces.breaks(), &coefficients).is_err());
+        coefficients[3][1] = f64::NAN;
+        assert!(Pieces::stored(&pieces.breaks(), &coefficients).is_err());
+        coefficients[3].pop();
+        assert!(Pieces::stored(&pieces.breaks(), &coefficients).is_err());
+        assert!(Pieces::stored(&[-REACH, 0.0, 0.0, REACH], &vec![vec![0.0; 13]; 3]).is_err());
+        assert!(Pieces::stored(&[], &[]).is_err());
+    }
+}

@@ -1,0 +1,215 @@
+//! Laws made from their densities: quantiles in pieces, polynomials by sums.
+
+use super::density::{Density, Integrated, Place};
+use super::germ::Germ;
+use super::law::{Law, Transform};
+use super::marginal::{Marginal, Polynomials};
+use super::normal_quantile::distribution;
+use super::own_variable::OwnVariable;
+use super::pieces::{Pieces, TOLERANCE};
+use super::uniform::MarginalError;
+use crate::polynomials::{OwnPolynomials, Recurrence};
+use std::sync::Arc;
+
+/// What a law has to say to become one: its parameters and its density.
+pub(super) struct Draft {
+    /// Name in study files.
+    pub name: &'static str,
+    /// Parameters in the order of study files.
+    pub parameters: Vec<(&'static str, f64)>,
+    /// Its density.
+    pub density: Box<dyn Density>,
+    /// What its polynomials are called.
+    pub family: &'static str,
+    /// Which ones it has unless a study chooses.
+    pub default: Polynomials,
+}
+
+/// x = origin + scale q(z), q being its quantile as a function of the normal score.
+#[derive(Debug)]
+struct Shaped {
+    name: &'static str,
+    parameters: Vec<(&'static str, f64)>,
+    support: [f64; 2],
+    origin: f64,
+    scale: f64,
+    quantile: Arc<Pieces>,
+    /// ξ = q, or ξ = z.
+    germ: Germ,
+    chosen: Option<Polynomials>,
+}
+
+/// The largest |F(q(z)) − Φ(z)| of what is stored, but for the rounding of q.
+const RESOLUTION: f64 = 1e-12;
+
+impl Draft {
+    /// The law, with polynomials that a study has chosen or the usual ones.
+    ///
+    /// # Errors
+    ///
+    /// [`MarginalError::Shape`] if its quantiles cannot be resolved in double precision.
+    pub fn law(self, chosen: Option<Polynomials>) -> Result<Marginal, MarginalError> {
+        let unresolved = || MarginalError::Shape { law: self.name };
+        let integrated = Integrated::new(&*self.density).ok_or_else(unresolved)?;
+        let [mean, scale] = integrated.moments();
+        let support = self.density.support();
+        // Seen from an end, values near it keep their digits.
+        let standard = |place: Place| match support {
+            [lower, _] if lower.is_finite() => place.from_lower / scale,
+            [_, upper] if upper.is_finite() => -place.to_upper / scale,
+            _ => (place.x - mean) / scale,
+        };
+        let origin = support.into_iter().find(|end| end.is_finite()).unwrap_or(mean);
+        let quantile = Pieces::of(|z| standard(integrated.at_score(z)), &integrated.scores_of_kinks());
+        let is_resolved = (-32..=32).all(|k| {
+            let z = f64::from(k) / 4.0;
+            let x = scale.mul_add(quantile.at(z), origin);
+            // Where a density is infinite, the rounding of a value alone can be more.
+            let rounding = TOLERANCE * (x - origin).abs() + 4.0 * f64::EPSILON * (x.abs() + origin.abs());
+            let [less, more] = [x - rounding, x + rounding].map(|x| integrated.probabilities(x));
+            let [below, above] = [distribution(z), distribution(-z)];
+            (less[0] - RESOLUTION <= below && below <= more[0] + RESOLUTION)
+                || (more[1] - RESOLUTION <= above && above <= less[1] + RESOLUTION)
+        });
+        if !is_resolved {
+            return Err(unresolved());
+        }
+        let (places, weights) = integrated.rule();
+        let nodes = places.into_iter().map(standard).collect();
+        let polynomials = OwnPolynomials::of_density(self.family, nodes, weights);
+        Ok(self.with(origin, scale, quantile, polynomials, chosen))
+    }
+
+    /// The law as a file has it.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, if the map is not that of the density.
+    pub fn stored(
+        self,
+        [origin, scale]: [f64; 2],
+        quantile: Pieces,
+        polynomials: Polynomials,
+        recurrence: Recurrence,
+    ) -> Result<Marginal, &'static str> {
+        if !(origin.is_finite() && scale.is_finite() && scale > 0.0) {
+            return Err("its map has no finite origin and positive scale");
+        }
+        if !is_quantile_of(&*self.density, [origin, scale], &quantile) {
+            return Err("its pieces are not the quantiles of its law");
+        }
+        let own = OwnPolynomials::stored(self.family, recurrence);
+        if polynomials == Polynomials::Own && !are_polynomials_of(&own, &quantile) {
+            return Err("its recurrence is not that of its law");
+        }
+        Ok(self.with(origin, scale, quantile, own, Some(polynomials)))
+    }
+
+    fn with(
+        self,
+        origin: f64,
+        scale: f64,
+        quantile: Pieces,
+        polynomials: OwnPolynomials,
+        chosen: Option<Polynomials>,
+    ) -> Marginal {
+        let quantile = Arc::new(quantile);
+        let support = self.density.support();
+        let germ = match chosen.unwrap_or(self.default) {
+            Polynomials::Hermite => Germ::Normal,
+            Polynomials::Own => Germ::Own(Arc::new(OwnVariable {
+                quantile: quantile.clone(),
+                polynomials: Arc::new(polynomials),
+                is_bounded: support.map(f64::is_finite),
+            })),
+        };
+        let Self { name, parameters, .. } = self;
+        Marginal::of(Shaped { name, parameters, support, origin, scale, quantile, germ, chosen })
+    }
+}
+
+/// Whether ln f(x(z)) + ln x′(z) + z²/2 is constant, as it is where x(z) gives normal variables the density f.
+fn is_quantile_of(density: &dyn Density, [origin, scale]: [f64; 2], quantile: &Pieces) -> bool {
+    const TOLERANCE: f64 = 1e-6;
+    /// Of a standard deviation: nearer to an end, distances from it have lost their digits.
+    const NEAR: f64 = 1e-6;
+    let [lower, upper] = density.support();
+    let level = |z: f64| {
+        let distance = scale * quantile.at(z);
+        let x = origin + distance;
+        let from_lower = if origin == lower { distance } else { x - lower };
+        let place = Place { x, from_lower, to_upper: upper - x };
+        let is_near = place.from_lower < NEAR * scale || place.to_upper < NEAR * scale;
+        (!is_near).then(|| density.log_density(place) + quantile.slope(z).ln() + 0.5 * z * z)
+    };
+    let levels: Vec<f64> = (-12..=12).filter_map(|k| level(f64::from(k) / 4.0)).collect();
+    levels.len() > 2 && levels.iter().all(|value| (value - levels[0]).abs() <= TOLERANCE)
+}
+
+/// Whether the first coefficients are those of the variable q(z), and the others can be.
+fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
+    /// By the trapezoidal rule, which kinks make worse and which ends where the pieces do.
+    const TOLERANCE: f64 = 1e-2;
+    const CHECKED: usize = 3;
+    let steps = (-272..=272).map(|k| f64::from(k) / 32.0);
+    let (nodes, weights) = steps.map(|z| (quantile.at(z), (-0.5 * z * z).exp())).unzip();
+    let expected = OwnPolynomials::of_density("own", nodes, weights).recurrence(CHECKED);
+    let Recurrence { diagonal, off_diagonal } = own.recurrence(own.stored_degree().unwrap_or(CHECKED));
+    let close = |found: &[f64], expected: &[f64]| {
+        found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= TOLERANCE * b.abs().max(1.0))
+    };
+    close(&diagonal, &expected.diagonal)
+        && close(&off_diagonal, &expected.off_diagonal)
+        && diagonal.iter().all(|a| a.is_finite())
+        && off_diagonal.iter().all(|b| b.is_normal() && *b > 0.0)
+}
+
+impl Shaped {
+    /// Whether ξ is the normal score.
+    fn is_of_score(&self) -> bool {
+        matches!(self.germ, Germ::Normal)
+    }
+}
+
+impl Law for Shaped {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn parameters(&self) -> Vec<(&'static str, f64)> {
+        self.parameters.clone()
+    }
+
+    fn germ(&self) -> &Germ {
+        &self.germ
+    }
+
+    fn physical(&self, xi: f64) -> f64 {
+        let q = if self.is_of_score() { self.quantile.at(xi) } else { xi };
+        self.scale.mul_add(q, self.origin).max(self.support[0]).min(self.support[1])
+    }
+
+    fn slope(&self, xi: f64) -> f64 {
+        self.scale * if self.is_of_score() { self.quantile.slope(xi) } else { 1.0 }
+    }
+
+    fn standardized(&self, x: f64) -> f64 {
+        let q = (x - self.origin) / self.scale;
+        if self.is_of_score() { self.quantile.score(q) } else { q }
+    }
+
+    fn support(&self) -> [f64; 2] {
+        self.support
+    }
+
+    fn transform(&self) -> Transform<'_> {
+        Transform::Pieces { origin: self.origin, scale: self.scale, quantile: &self.quantile }
+    }
+
+    fn chosen(&self) -> Option<Polynomials> {
+        self.chosen
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,54 @@
+//! The triangular law: of what has a least, a likeliest and a largest value.
+
+use super::density::{Density, Place};
+use super::law::finite;
+use super::marginal::Polynomials;
+use super::shaped::Draft;
+use super::uniform::{MarginalError, Uniform};
+
+/// A density that rises along a line up to its mode, and falls along another.
+#[derive(Debug)]
+struct Triangular {
+    interval: Uniform,
+    mode: f64,
+}
+
+/// The triangular law between two bounds, with its likeliest value, all in the input's own unit.
+///
+/// # Errors
+///
+/// Bounds must be ascending and apart, the mode between them or at one of them.
+pub(super) fn triangular(lower: f64, mode: f64, upper: f64) -> Result<Draft, MarginalError> {
+    let (interval, mode) = (Uniform::new(lower, upper)?, finite("mode", mode)?);
+    if !(lower..=upper).contains(&mode) {
+        return Err(MarginalError::Parameter { name: "mode", value: mode, expected: "between lower and upper" });
+    }
+    Ok(Draft {
+        name: "triangular",
+        parameters: vec![("lower", lower), ("mode", mode), ("upper", upper)],
+        density: Box::new(Triangular { interval, mode }),
+        family: "own",
+        default: Polynomials::Own,
+    })
+}
+
+impl Density for Triangular {
+    fn support(&self) -> [f64; 2] {
+        [self.interval.lower(), self.interval.upper()]
+    }
+
+    fn log_density(&self, place: Place) -> f64 {
+        let [rise, fall] = [self.mode - self.interval.lower(), self.interval.upper() - self.mode];
+        if place.x <= self.mode && rise > 0.0 { (place.from_lower / rise).ln() } else { (place.to_upper / fall).ln() }
+    }
+
+    fn typical(&self) -> [f64; 2] {
+        let [lower, upper] = self.support();
+        [(lower + self.mode + upper) / 3.0, (upper - lower) / 4.5]
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        let [lower, upper] = self.support();
+        if lower < self.mode && self.mode < upper { vec![self.mode] } else { Vec::new() }
+    }
+}
