@@ -12,6 +12,7 @@ mod lognormal;
 mod marginal;
 mod normal;
 mod normal_quantile;
+mod normal_tail;
 mod own_variable;
 mod parameters;
 mod pieces;
