@@ -23,6 +23,18 @@ pub enum EvalError {
         /// Number of inputs.
         inputs: usize,
     },
+    /// What is known of independent inputs alone was asked of one that others depend on.
+    #[error("other inputs depend on {input}, so that nothing can be said of it alone")]
+    Dependent {
+        /// Name of the input.
+        input: String,
+    },
+    /// Shapley effects where an input that others depend on is confined to an interval.
+    #[error("others depend on {input}, which is confined to an interval: there are no Shapley effects then")]
+    ConfinedDependent {
+        /// Name of the input.
+        input: String,
+    },
     /// The user asked to stop.
     #[error("{0}")]
     Interrupted(#[from] Interrupted),

@@ -30,6 +30,17 @@ pub enum SessionError {
         /// The input.
         input: String,
     },
+    /// Critical values of an input that others depend on.
+    #[error(
+        "critical value of {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; sweep it \
+         instead, and the others follow: --sweep {input}=FROM:TO:POINTS", others.join(", ")
+    )]
+    CriticalOfDependent {
+        /// The input.
+        input: String,
+        /// Those that depend on it.
+        others: Vec<String>,
+    },
     /// Critical values from other than random samples.
     #[error("critical values are found from random samples, with no other sampler")]
     CriticalSampler,

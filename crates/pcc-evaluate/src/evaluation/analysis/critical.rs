@@ -166,7 +166,8 @@ pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, shares: &Moments) -> O
 ///
 /// # Errors
 ///
-/// [`EvalError`]; [`EvalError::NoSuchInput`] if there are not that many inputs.
+/// [`EvalError`]; [`EvalError::NoSuchInput`] if there are not that many inputs, [`EvalError::Dependent`] if others depend
+/// on it.
 ///
 /// # Examples
 ///
@@ -206,6 +207,9 @@ pub fn critical_values_in(
 ) -> Result<CriticalValues, EvalError> {
     let inputs = surrogate.inputs.inputs();
     let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
+    if !surrogate.inputs.correlated_with(input).is_empty() {
+        return Err(EvalError::Dependent { input: chosen.name.clone() });
+    }
     let domain = chosen.marginal.clone();
     let plan = Plan::new(surrogate);
     let mut values = CriticalValues::new(samples, domain, surrogate.labels());
@@ -303,9 +307,8 @@ impl Search<'_> {
         self.points.resize(samples * dimension, 0.0);
         for (index, point) in range.zip(self.points.chunks_exact_mut(dimension)) {
             let mut stream = Stream::new(self.seed, Purpose::Evaluation, index);
-            for (j, coordinate) in point.iter_mut().enumerate() {
-                *coordinate = self.region.place(j, stream.next_unit());
-            }
+            point.iter_mut().for_each(|coordinate| *coordinate = stream.next_unit());
+            self.region.place(point);
         }
         let start: Vec<_> = (0..samples).map(|sample| (sample, grid_point(0))).collect();
         let walking: Vec<Walking> = self.evaluate(&start)?.into_iter().map(|end| Walking { end, changes: 0 }).collect();

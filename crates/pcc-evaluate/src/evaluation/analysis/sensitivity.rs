@@ -46,7 +46,7 @@ pub const SENSITIVITY_LEVEL: f64 = 0.95;
 const LARGEST: f64 = 1e75;
 
 /// (1 − 0)²/2: half the square of what one sample can change the indicator by.
-const INDICATOR_STEP: f64 = 0.5;
+pub(super) const INDICATOR_STEP: f64 = 0.5;
 
 /// Sobol' indices of what decides stability.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ pub struct Sensitivity {
     pub total: Estimate,
 }
 
-/// An index with the interval that holds it with probability [`SENSITIVITY_LEVEL`]. What lies outside \[0, 1\] by
+/// An index, or an effect, with the interval that holds it with probability [`SENSITIVITY_LEVEL`]. What lies outside \[0, 1\] by
 /// chance is moved to the nearer end before the interval is laid around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -82,7 +82,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    fn new(value: f64, half_width: f64) -> Self {
+    pub(super) fn new(value: f64, half_width: f64) -> Self {
         let value = value.clamp(0.0, 1.0);
         Self { value, lower: (value - half_width).max(0.0), upper: (value + half_width).min(1.0) }
     }
@@ -96,7 +96,9 @@ impl Estimate {
 ///
 /// # Errors
 ///
-/// [`EvalError`]; [`EvalError::NotFinite`] also if |max Re λ| exceeds 10⁷⁵, whose powers are too large.
+/// [`EvalError`]; [`EvalError::NotFinite`] also if |max Re λ| exceeds 10⁷⁵, whose powers are too large;
+/// [`EvalError::Dependent`] if inputs depend on each other, which [`shapley_effects`](super::shapley::shapley_effects)
+/// are for.
 ///
 /// # Examples
 ///
@@ -131,8 +133,12 @@ pub fn sensitivities_in(
     seed: u64,
     observer: &dyn Observer,
 ) -> Result<Sensitivities, EvalError> {
+    if let Some(&input) = surrogate.inputs.dependence().and_then(|copula| copula.members().first()) {
+        return Err(EvalError::Dependent { input: surrogate.inputs.inputs()[input].name.clone() });
+    }
     let plan = Plan::new(surrogate);
-    let middle: Vec<f64> = (0..surrogate.inputs.dimension()).map(|input| region.place(input, 0.5)).collect();
+    let mut middle = vec![0.5; surrogate.inputs.dimension()];
+    region.place(&mut middle);
     let center = evaluate_points(surrogate, &plan, &[&middle]).max_re.first().copied().unwrap_or(0.0);
     if !is_usable(center) {
         return Err(not_usable(&surrogate.inputs, &middle));
@@ -153,12 +159,12 @@ pub fn sensitivities_in(
     })
 }
 
-fn is_usable(max_re: f64) -> bool {
+pub(super) fn is_usable(max_re: f64) -> bool {
     // False for NaN.
     max_re.abs() <= LARGEST
 }
 
-fn not_usable(inputs: &InputSpace, standardized: &[f64]) -> EvalError {
+pub(super) fn not_usable(inputs: &InputSpace, standardized: &[f64]) -> EvalError {
     EvalError::NotFinite { point: inputs.describe(&inputs.physical(standardized)) }
 }
 
@@ -290,10 +296,10 @@ impl Comparer<'_> {
 /// the whole domain the first r of them are [`crate::probability::inputs::random_point`].
 fn draw(region: &Region, seed: u64, index: u64, pair: &mut [f64]) {
     let mut stream = Stream::new(seed, Purpose::Evaluation, index);
-    let dimension = pair.len() / 2;
-    for (j, coordinate) in pair.iter_mut().enumerate() {
-        *coordinate = region.place(j % dimension, stream.next_unit());
-    }
+    pair.iter_mut().for_each(|coordinate| *coordinate = stream.next_unit());
+    let (a, b) = pair.split_at_mut(pair.len() / 2);
+    region.place(a);
+    region.place(b);
 }
 
 /// The indices of one output that a single sample changes by `step`/nV.

@@ -89,7 +89,9 @@ pub(crate) fn unanswered_in(
             let points: Vec<Vec<f64>> = range
                 .map(|index| {
                     let mut stream = Stream::new(seed, Purpose::Evaluation, index);
-                    (0..dimension).map(|input| region.place(input, stream.next_unit())).collect()
+                    let mut point: Vec<f64> = (0..dimension).map(|_| stream.next_unit()).collect();
+                    region.place(&mut point);
+                    point
                 })
                 .collect();
             let block = evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>());

@@ -1,5 +1,6 @@
 //! One number for each point of a block.
 
+use crate::probability::inputs::Column;
 use pulp::Simd;
 
 /// Points evaluated together, one per lane: as many as eight vectors of the widest instruction set hold.
@@ -16,6 +17,18 @@ pub struct Lanes(pub [f64; BLOCK_POINTS]);
 
 /// [`VECTORS`] vectors of an instruction set.
 pub(crate) type Vectors<S> = [<S as Simd>::f64s; VECTORS];
+
+impl Column<BLOCK_POINTS> for Lanes {
+    #[inline(always)]
+    fn lanes(&self) -> &[f64; BLOCK_POINTS] {
+        &self.0
+    }
+
+    #[inline(always)]
+    fn lanes_mut(&mut self) -> &mut [f64; BLOCK_POINTS] {
+        &mut self.0
+    }
+}
 
 impl Lanes {
     /// The same number in every lane.

@@ -62,9 +62,7 @@ impl WithSimd for Drawing<'_> {
                 }
             }
         }
-        for (input, units) in points.iter_mut().enumerate() {
-            region.place_lanes(input, units);
-        }
+        region.place_lanes(points);
     }
 }
 

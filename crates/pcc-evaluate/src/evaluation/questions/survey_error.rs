@@ -85,6 +85,25 @@ pub enum SurveyError {
         /// Name of the input.
         input: String,
     },
+    /// Intervals of two inputs that depend on each other.
+    #[error(
+        "{one} and {other} depend on each other, and only one of them can be confined to an interval; fix one of them, or \
+         widen its interval to all of its range"
+    )]
+    Intervals {
+        /// One input.
+        one: String,
+        /// The other.
+        other: String,
+    },
+    /// An interval in which a correlated input has no probability where others are fixed.
+    #[error(
+        "with the inputs that are fixed, {input} practically never lies in its interval; fix them or it somewhere else"
+    )]
+    Improbable {
+        /// The input that is confined to an interval.
+        input: String,
+    },
     /// A value outside the domain, where the surrogate knows nothing.
     #[error("{input} = {value:?} lies outside [{lower:?}, {upper:?}], where the surrogate knows nothing")]
     Outside {

@@ -1,5 +1,6 @@
 //! Uncertain inputs: their laws, and the map between physical and standardized variables.
 
+mod correlated;
 mod beta;
 mod density;
 mod description;
@@ -10,6 +11,7 @@ mod law;
 mod log_uniform;
 mod lognormal;
 mod marginal;
+mod nataf;
 mod normal;
 mod normal_quantile;
 mod normal_tail;
@@ -23,11 +25,14 @@ mod space;
 mod triangular;
 mod uniform;
 
+pub(crate) use correlated::{Column, Confinement, Conflict, Correlated};
 pub use description::{Description, DescriptionError};
 pub use germ::Germ;
 pub(crate) use law::Transform;
 pub use marginal::{Marginal, Other, Polynomials};
 pub use own_variable::OwnVariable;
+pub(crate) use germ::OUTERMOST;
+pub use nataf::{pearson_of_scores, scores_of_pearson};
 pub use parameters::Parameters;
 pub(crate) use parameters::Stored;
 pub(crate) use pieces::Pieces;

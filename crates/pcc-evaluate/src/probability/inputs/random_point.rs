@@ -9,9 +9,8 @@ use std::ops::Range;
 #[inline]
 pub fn random_point(space: &InputSpace, seed: u64, purpose: Purpose, index: u64, point: &mut [f64]) {
     let mut stream = Stream::new(seed, purpose, index);
-    for (coordinate, input) in point.iter_mut().zip(space.inputs()) {
-        *coordinate = input.marginal.standardized_quantile(stream.next_unit());
-    }
+    point.iter_mut().for_each(|coordinate| *coordinate = stream.next_unit());
+    space.place(point);
 }
 
 /// The standardized coordinates of the random points with these numbers, one list per point: [`random_point`] for each.

@@ -1,7 +1,9 @@
-//! The space of all uncertain inputs, independent of each other.
+//! The space of all uncertain inputs, independent of each other or not.
 
+use super::correlated::{Confinement, Correlated};
 use super::description::Description;
 use super::marginal::Marginal;
+use crate::probability::dependence::GaussianCopula;
 use std::collections::HashSet;
 use thiserror::Error;
 
@@ -52,6 +54,14 @@ pub enum InputError {
         /// The name.
         name: String,
     },
+    /// A dependence of another number of inputs.
+    #[error("there are {inputs} inputs, but the dependence is one of {copula}")]
+    OtherDimension {
+        /// Number of inputs.
+        inputs: usize,
+        /// Number of inputs of the copula.
+        copula: usize,
+    },
     /// A coordinate lies outside its distribution's support.
     #[error("{name} = {value:?} lies outside [{lower:?}, {upper:?}]")]
     Outside {
@@ -64,6 +74,21 @@ pub enum InputError {
         /// Upper end of the support.
         upper: f64,
     },
+}
+
+/// Correlations closer than this are one that two machines have computed.
+const PORTABLE: f64 = 1e-12;
+
+/// Whether two copulas are one.
+fn depend_alike(one: Option<&GaussianCopula>, other: Option<&GaussianCopula>) -> bool {
+    let correlations =
+        |copula: Option<&GaussianCopula>| copula.map_or(Vec::new(), |copula| copula.correlations().to_vec());
+    let (one, other) = (correlations(one), correlations(other));
+    one.len() == other.len()
+        && one
+            .iter()
+            .zip(&other)
+            .all(|(a, b)| (a.first, a.second) == (b.first, b.second) && (a.value - b.value).abs() <= PORTABLE)
 }
 
 /// At least one input, all names distinct. Their order fixes the order of the standardized variables.
@@ -79,7 +104,17 @@ pub enum InputError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct InputSpace(Vec<Input>);
+pub struct InputSpace {
+    inputs: Vec<Input>,
+    dependence: Option<Dependence>,
+}
+
+/// A copula of which not all inputs are independent, and how points are drawn under it.
+#[derive(Debug, Clone, PartialEq)]
+struct Dependence {
+    copula: GaussianCopula,
+    drawing: Correlated,
+}
 
 impl InputSpace {
     /// The space of `inputs`.
@@ -95,50 +130,109 @@ impl InputSpace {
         if let Some(input) = inputs.iter().find(|input| !names.insert(input.name.as_str())) {
             return Err(InputError::Repeated { name: input.name.clone() });
         }
-        Ok(Self(inputs))
+        Ok(Self { inputs, dependence: None })
+    }
+
+    /// The same inputs, which depend on each other by this copula.
+    ///
+    /// # Errors
+    ///
+    /// [`InputError::OtherDimension`] if the copula is of another number of inputs.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc_evaluate::probability::dependence::GaussianCopula;
+    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Normal};
+    /// let input = |name: &str| Ok::<_, Box<dyn std::error::Error>>(Input::new(name, Marginal::Normal(Normal::new(0.0, 1.0)?)));
+    /// let copula = GaussianCopula::new(2, [(0, 1, 0.8)])?;
+    /// let space = InputSpace::new(vec![input("k")?, input("c")?])?.with_dependence(copula)?;
+    /// let mut point = [0.9, 0.5];
+    /// space.place(&mut point);
+    /// assert!((point[1] - 0.8 * point[0]).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_dependence(self, copula: GaussianCopula) -> Result<Self, InputError> {
+        if copula.dimension() != self.dimension() {
+            return Err(InputError::OtherDimension { inputs: self.dimension(), copula: copula.dimension() });
+        }
+        let confined = vec![Confinement::NONE; self.dimension()];
+        let dependence = match Correlated::new(&copula, &self.inputs, &confined) {
+            Ok(drawing) if !copula.members().is_empty() => Some(Dependence { copula, drawing }),
+            // Nothing is confined, so that nothing is in conflict.
+            Ok(_) | Err(_) => None,
+        };
+        Ok(Self { dependence, ..self })
+    }
+
+    /// How the inputs depend on each other, if some do.
+    pub fn dependence(&self) -> Option<&GaussianCopula> {
+        self.dependence.as_ref().map(|dependence| &dependence.copula)
+    }
+
+    /// The inputs that depend on input number `input`, itself among them; none if it is independent of all others.
+    pub fn correlated_with(&self, input: usize) -> &[usize] {
+        self.dependence().and_then(|copula| copula.block_of(input)).unwrap_or_default()
+    }
+
+    /// Replaces numbers of the open interval (0, 1), one for each input, by the standardized coordinates of the point
+    /// that they stand for: a random point, if they are random and independent of each other.
+    #[inline]
+    pub fn place(&self, units: &mut [f64]) {
+        let is_placed = |j: usize| self.dependence.as_ref().is_some_and(|dependence| dependence.drawing.places(j));
+        for (j, (unit, input)) in units.iter_mut().zip(&self.inputs).enumerate() {
+            if !is_placed(j) {
+                *unit = input.marginal.standardized_quantile(*unit);
+            }
+        }
+        if let Some(dependence) = &self.dependence {
+            dependence.drawing.place(units.as_chunks_mut::<1>().0);
+        }
     }
 
     /// Number of inputs r.
     pub fn dimension(&self) -> usize {
-        self.0.len()
+        self.inputs.len()
     }
 
     /// The inputs in order.
     pub fn inputs(&self) -> &[Input] {
-        &self.0
+        &self.inputs
     }
 
     /// Names in order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.0.iter().map(|input| input.name.as_str())
+        self.inputs.iter().map(|input| input.name.as_str())
     }
 
-    /// Whether names and distributions are the same in the same order: then a point means the same in both, whatever
-    /// units and labels say.
+    /// Whether names, distributions and dependence are the same in the same order: then a point means the same in both,
+    /// whatever units and labels say.
     pub fn is_same_as(&self, other: &Self) -> bool {
         let is_same = |(a, b): (&Input, &Input)| a.name == b.name && a.marginal == b.marginal;
-        self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(is_same)
+        self.inputs.len() == other.inputs.len()
+            && self.inputs.iter().zip(&other.inputs).all(is_same)
+            && depend_alike(self.dependence(), other.dependence())
     }
 
     /// The same inputs with these units and labels in turn.
     pub fn described(mut self, descriptions: impl IntoIterator<Item = Description>) -> Self {
-        self.0.iter_mut().zip(descriptions).for_each(|(input, description)| input.description = description);
+        self.inputs.iter_mut().zip(descriptions).for_each(|(input, description)| input.description = description);
         self
     }
 
     /// Whether some input has a unit or a label.
     pub fn has_descriptions(&self) -> bool {
-        self.0.iter().any(|input| !input.description.is_empty())
+        self.inputs.iter().any(|input| !input.description.is_empty())
     }
 
     /// Physical coordinates of the standardized point ξ.
     pub fn physical(&self, standardized: &[f64]) -> Vec<f64> {
-        self.0.iter().zip(standardized).map(|(input, &xi)| input.marginal.physical(xi)).collect()
+        self.inputs.iter().zip(standardized).map(|(input, &xi)| input.marginal.physical(xi)).collect()
     }
 
     /// Standardized coordinates of a physical point.
     pub fn standardized(&self, physical: &[f64]) -> Vec<f64> {
-        self.0.iter().zip(physical).map(|(input, &x)| input.marginal.standardized(x)).collect()
+        self.inputs.iter().zip(physical).map(|(input, &x)| input.marginal.standardized(x)).collect()
     }
 
     /// Whether every coordinate lies in its support.
@@ -147,7 +241,7 @@ impl InputSpace {
     ///
     /// [`InputError::Outside`] names the first that does not.
     pub fn check(&self, physical: &[f64]) -> Result<(), InputError> {
-        for (input, &value) in self.0.iter().zip(physical) {
+        for (input, &value) in self.inputs.iter().zip(physical) {
             if !input.marginal.contains(value) {
                 let [lower, upper] = input.marginal.support();
                 return Err(InputError::Outside { name: input.name.clone(), value, lower, upper });
