@@ -17,6 +17,7 @@ pub use analysis::self_test::self_test_difference;
 pub use analysis::sensitivity::{
     Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity, sensitivities, sensitivities_in,
 };
+pub use analysis::shapley::{ShapleyEffects, shapley_effects, shapley_effects_in};
 pub use analysis::unanswered::Unanswered;
 pub(crate) use analysis::unanswered::unanswered_in;
 pub use error::EvalError;

@@ -2,8 +2,8 @@
 
 use super::error::SessionError;
 use crate::evaluation::{
-    Answer, CriticalValues, EvalError, Question, Sampler, Sensitivities, Survey, Surveyed, Unanswered,
-    critical_values_in, sensitivities_in, unanswered_in,
+    Answer, CriticalValues, EvalError, Question, Sampler, Sensitivities, ShapleyEffects, Survey, Surveyed, Unanswered,
+    critical_values_in, sensitivities_in, shapley_effects_in, unanswered_in,
 };
 use crate::foundation::{InstructionSet, Interrupted, Observer, is_interruption};
 use crate::shard_file::Part;
@@ -30,8 +30,11 @@ pub struct Evaluation<'s> {
     pub question: &'s Question,
     /// What the samples say: one cell, or one for each point of the sweeps.
     pub answer: Answer,
-    /// Sensitivities of stability; none of sweeps, and none after an interruption.
+    /// Sensitivities of stability to independent inputs; none of sweeps, and none after an interruption.
     pub sensitivities: Option<Sensitivities>,
+    /// Shapley effects on it where inputs depend on each other; none of sweeps, of inputs confined to an interval that
+    /// others depend on, and after an interruption.
+    pub effects: Option<ShapleyEffects>,
     /// What rests on answers, if the model did not answer everywhere; none of sweeps, and none after an interruption.
     pub unanswered: Option<Unanswered>,
     /// The same at every point of a sweep; empty if the model answered everywhere, of very large sweeps, and after an
@@ -118,6 +121,7 @@ impl<'s> Session<'s> {
             question,
             is_complete: answer.is_complete,
             sensitivities: None,
+            effects: None,
             unanswered: None,
             unanswered_at: Vec::new(),
             critical: None,
@@ -147,10 +151,17 @@ impl<'s> Session<'s> {
             evaluation.unanswered = in_time(unanswered_in(surrogate, coverage, region, samples, observer))?;
             evaluation.is_complete = evaluation.unanswered.is_some();
         }
-        if evaluation.is_complete {
-            let base = question.samples.min(SENSITIVITY_SAMPLES);
-            evaluation.sensitivities = in_time(sensitivities_in(surrogate, region, base, seed, observer))?;
-            evaluation.is_complete = evaluation.sensitivities.is_some();
+        let base = question.samples.min(SENSITIVITY_SAMPLES);
+        match surrogate.inputs.dependence() {
+            None if evaluation.is_complete => {
+                evaluation.sensitivities = in_time(sensitivities_in(surrogate, region, base, seed, observer))?;
+                evaluation.is_complete = evaluation.sensitivities.is_some();
+            }
+            Some(_) if evaluation.is_complete && region.has_effects() => {
+                evaluation.effects = in_time(shapley_effects_in(surrogate, region, base, seed, observer))?;
+                evaluation.is_complete = evaluation.effects.is_some();
+            }
+            _ => {}
         }
         if let Some(input) = critical.filter(|_| evaluation.is_complete) {
             let found = in_time(critical_values_in(surrogate, region, input, question.samples, seed, observer))?;
@@ -169,6 +180,11 @@ pub(super) fn critical_input(surrogate: &Surrogate, question: &Question, name: &
     };
     if question.conditions.iter().any(|condition| condition.input == name) {
         return Err(SessionError::ConfinedInput { input });
+    }
+    let of_block = |&other: &usize| (other != position).then(|| surrogate.inputs.inputs()[other].name.clone());
+    let others: Vec<String> = surrogate.inputs.correlated_with(position).iter().filter_map(of_block).collect();
+    if !others.is_empty() {
+        return Err(SessionError::CriticalOfDependent { input, others });
     }
     if question.sampler != Sampler::MonteCarlo {
         return Err(SessionError::CriticalSampler);

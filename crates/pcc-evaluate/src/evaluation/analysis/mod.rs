@@ -6,4 +6,5 @@ pub(super) mod critical;
 pub(super) mod crossings;
 pub(super) mod self_test;
 pub(super) mod sensitivity;
+pub(super) mod shapley;
 pub(super) mod unanswered;
