@@ -38,6 +38,8 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
     let divides_unbounded =
         mesh.elements().len() > 1 && inputs.inputs().iter().any(|input| !input.marginal.is_divisible());
     ensure("elements", !divides_unbounded, || "only bounded standardized variables have elements".to_owned())?;
+    let divides_dependent = mesh.elements().len() > 1 && inputs.dependence().is_some();
+    ensure("elements", !divides_dependent, || "inputs that depend on each other have no elements".to_owned())?;
     Ok(Surrogate {
         provenance,
         coverage,

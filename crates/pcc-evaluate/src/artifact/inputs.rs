@@ -5,6 +5,7 @@ use super::from_v1::{HIGHEST_DEGREE, ROUNDING};
 use super::meaning::{ensure, is_printable};
 use super::v1;
 use crate::polynomials::{Family, Recurrence};
+use crate::probability::dependence::{Correlation, GaussianCopula};
 use crate::probability::inputs::{
     Input, InputSpace, Marginal, Parameters, Pieces, Polynomials, Stored, Transform, Uniform,
 };
@@ -35,7 +36,17 @@ pub(super) fn section(surrogate: &Surrogate) -> v1::Inputs {
         }
     };
     let inputs = surrogate.inputs.inputs().iter().zip(degrees).map(input).collect();
-    v1::Inputs { inputs, dependence: v1::Dependence::Independent }
+    v1::Inputs { inputs, dependence: dependence(&surrogate.inputs) }
+}
+
+fn dependence(inputs: &InputSpace) -> v1::Dependence {
+    let Some(copula) = inputs.dependence() else { return v1::Dependence::Independent };
+    let correlation = |pair: &Correlation| v1::Correlation {
+        first: pair.first as u32,
+        second: pair.second as u32,
+        value: pair.value,
+    };
+    v1::Dependence::GaussianCopula { correlations: copula.correlations().iter().map(correlation).collect() }
 }
 
 fn family_name(family: &Family) -> v1::Family {
@@ -76,7 +87,6 @@ fn distribution(marginal: &Marginal) -> v1::Distribution {
 
 /// The inputs of a section.
 pub(super) fn space(section: &v1::Inputs) -> Result<InputSpace, ReadError> {
-    let v1::Dependence::Independent = section.dependence;
     let mut inputs = Vec::with_capacity(section.inputs.len());
     for input in &section.inputs {
         let meaning =
@@ -90,7 +100,24 @@ pub(super) fn space(section: &v1::Inputs) -> Result<InputSpace, ReadError> {
         }
         inputs.push(Input::new(input.name.clone(), marginal));
     }
-    InputSpace::new(inputs).map_err(|error| ReadError::Meaning { section: "inputs", message: error.to_string() })
+    let meaning = |message: String| ReadError::Meaning { section: "inputs", message };
+    let inputs = InputSpace::new(inputs).map_err(|error| meaning(error.to_string()))?;
+    match &section.dependence {
+        v1::Dependence::Independent => Ok(inputs),
+        v1::Dependence::GaussianCopula { correlations } => dependent(inputs, correlations).map_err(meaning),
+    }
+}
+
+fn dependent(inputs: InputSpace, stored: &[v1::Correlation]) -> Result<InputSpace, String> {
+    let position = |number: u32| usize::try_from(number).unwrap_or(usize::MAX);
+    let pairs = stored.iter().map(|pair| (position(pair.first), position(pair.second), pair.value));
+    let copula = GaussianCopula::new(inputs.dimension(), pairs.clone()).map_err(|error| error.to_string())?;
+    // Said in the way that is written, and in no other: in order, without zeros.
+    let is_same = copula.correlations().iter().map(|pair| (pair.first, pair.second, pair.value)).eq(pairs);
+    match is_same && !stored.is_empty() {
+        true => inputs.with_dependence(copula).map_err(|error| error.to_string()),
+        false => Err("the correlations are none, zero, or not in order".to_owned()),
+    }
 }
 
 fn marginal(input: &v1::Input) -> Result<Marginal, String> {

@@ -7,7 +7,7 @@ use super::v2;
 /// The first section that holds a NaN or an infinity.
 pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
     let sections: [(&str, Vec<f64>); 10] = [
-        ("inputs", document.inputs.inputs.iter().flat_map(input).collect()),
+        ("inputs", document.inputs.inputs.iter().flat_map(input).chain(dependence(&document.inputs)).collect()),
         ("outputs", document.outputs.components().flat_map(|component| [component.center, component.scale]).collect()),
         ("elements", elements(&document.elements)),
         ("expansions", document.expansions.expansions.iter().flat_map(expansion).collect()),
@@ -48,6 +48,13 @@ fn input(input: &v1::Input) -> Vec<f64> {
     numbers.extend(&input.recurrence.off_diagonal);
     numbers.extend(bounds(&input.bounds));
     numbers
+}
+
+fn dependence(inputs: &v1::Inputs) -> Vec<f64> {
+    match &inputs.dependence {
+        v1::Dependence::Independent => Vec::new(),
+        v1::Dependence::GaussianCopula { correlations } => correlations.iter().map(|pair| pair.value).collect(),
+    }
 }
 
 fn bounds(bounds: &Option<v1::Bounds>) -> impl Iterator<Item = f64> {

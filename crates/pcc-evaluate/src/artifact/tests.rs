@@ -7,6 +7,7 @@ use crate::surrogate::{Band, Certificate, MarginalBounds, Surrogate, VerdictBasi
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
+mod dependence;
 mod descriptions;
 
 /// Bytes before the first section, and those of a section's header.

@@ -216,6 +216,24 @@ pub struct Bounds {
 pub enum Dependence {
     /// All inputs are independent.
     Independent,
+    /// A Gaussian copula (since minor version 3).
+    GaussianCopula {
+        /// The correlations of normal scores that are not zero, by first, then second input.
+        correlations: Vec<Correlation>,
+    },
+}
+
+/// The correlation of the normal scores Φ⁻¹(F(x)) of two inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Correlation {
+    /// Position of the one that comes first, from 0.
+    pub first: u32,
+    /// Position of the other.
+    pub second: u32,
+    /// Between −1 and 1.
+    pub value: f64,
 }
 
 /// Section 3: what the components form.

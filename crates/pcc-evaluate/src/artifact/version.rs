@@ -18,7 +18,7 @@ pub const MAJOR: u16 = 1;
 ///   the search for an expansion ended that full expansions have.
 /// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10; section 9 in
 ///   version 2, with bounds of all shares; a search that ended because errors no longer fell; sections 11 and 12; laws
-///   other than the uniform one in section 2.
+///   other than the uniform one in section 2, and dependence.
 pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
@@ -36,7 +36,8 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     let has_more_sections = surrogate.coverage.is_some() || surrogate.inputs.has_descriptions();
     let is_uniform = |input: &Input| matches!(input.marginal, Marginal::Uniform(_));
     let has_laws = !surrogate.inputs.inputs().iter().all(is_uniform);
-    match has_laws || has_verdict || bounds_all || has_stalled || has_more_sections {
+    let has_dependence = surrogate.inputs.dependence().is_some();
+    match has_laws || has_dependence || has_verdict || bounds_all || has_stalled || has_more_sections {
         true => 3,
         false if needs_2 => 2,
         false => u16::from(has_clusters),
