@@ -226,8 +226,7 @@ impl<'a> Evaluations<'a> {
 
     /// All points of the design in standardized coordinates.
     fn points(&self) -> Samples {
-        let inputs = self.study.inputs.inputs();
-        self.design.samples(|j, unit| inputs[j].marginal.standardized_quantile(unit))
+        self.design.placed(|units| self.study.inputs.place(units))
     }
 
     /// The points whose runs answered, in standardized coordinates.

@@ -224,7 +224,6 @@ fn summary_of(words: &[String]) -> String {
 pub(super) fn self_test_points(study: &Study) -> Vec<Vec<f64>> {
     let mut design = NestedLatinHypercube::new(study.inputs.dimension(), SELF_TEST_SEED);
     design.grow_to(SELF_TEST_POINTS);
-    let inputs = study.inputs.inputs();
-    let samples = design.samples(|j, unit| inputs[j].marginal.standardized_quantile(unit));
+    let samples = design.placed(|units| study.inputs.place(units));
     samples.points().map(|point| study.inputs.physical(point)).collect()
 }

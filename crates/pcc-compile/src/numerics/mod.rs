@@ -5,6 +5,7 @@ pub mod assignment;
 pub mod eigenvalues;
 pub mod invariant_subspace;
 pub mod minimize;
+pub mod nearest_correlation;
 pub mod positive_definite;
 pub mod qr;
 pub mod quadrature;

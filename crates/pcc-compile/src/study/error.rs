@@ -1,5 +1,6 @@
 //! What can be wrong with a study file.
 
+use super::dependence::DependenceError;
 use crate::mechanics::model::matrices::MatricesError;
 use pcc_evaluate::probability::inputs::{DescriptionError, InputError, MarginalError};
 use thiserror::Error;
@@ -302,6 +303,15 @@ pub enum StudyError {
         place: Place,
         /// The name.
         name: String,
+    },
+    /// The inputs cannot depend on each other like this.
+    #[error("{place}: {cause}")]
+    Dependence {
+        /// Where.
+        place: Place,
+        /// Why.
+        #[source]
+        cause: DependenceError,
     },
     /// The inputs do not form a space.
     #[error("{place}: {cause}")]

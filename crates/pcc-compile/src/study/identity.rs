@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use super::Study;
 use super::model::identity;
+use super::{DependenceSettings, Study};
 use crate::fitting::fit::method::Value;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;
@@ -58,6 +58,13 @@ fn problem(study: &Study) -> String {
             let _ = if is_uniform { write!(text, " {value:?}") } else { write!(text, " {name} {value:?}") };
         }
         text.push('\n');
+    }
+    // As it is given: what follows from it may differ between machines in the last bit.
+    if let Some(DependenceSettings { measure, pairs }) = &study.dependence {
+        let names: Vec<&str> = study.inputs.names().collect();
+        for &(one, other, value) in pairs {
+            let _ = writeln!(text, "{} {} {} {value:?}", measure.name(), names[one], names[other]);
+        }
     }
     let _ = writeln!(text, "target {}", study.spectrum.target.name());
     match &study.spectrum.modes {

@@ -1,6 +1,7 @@
 //! Studies: what to build a surrogate of, and how. A TOML file becomes a validated problem.
 
 mod defaults;
+mod dependence;
 mod error;
 mod file;
 mod fit;
@@ -15,6 +16,7 @@ mod schema;
 mod settings;
 mod validate;
 
+pub use dependence::{DependenceError, DependenceSettings, Measure};
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
 pub use model::{Command, ModelSettings, Table};
@@ -60,6 +62,8 @@ pub struct Study {
     pub model: ModelSettings,
     /// The uncertain inputs.
     pub inputs: InputSpace,
+    /// What was said of their dependence; independent if nothing. The inputs know what follows.
+    pub dependence: Option<DependenceSettings>,
     /// What of the spectrum is expanded.
     pub spectrum: SpectrumSettings,
     /// Where the model is run.

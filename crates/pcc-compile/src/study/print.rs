@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use super::dependence::KIND;
 use super::model::{self, unit_of};
-use super::{DesignKind, STUDY_FORMAT, Study};
+use super::{DependenceSettings, DesignKind, Measure, STUDY_FORMAT, Study};
 use crate::fitting::fit::method::{Design, MethodSetting, Value};
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;
@@ -18,6 +19,7 @@ pub(super) fn study(study: &Study) -> String {
     file.line("seed", study.seed, "of the design");
     model::print(&mut file, &study.model);
     inputs(&mut file, study);
+    dependence(&mut file, study);
 
     file.table("spectrum");
     let modes = match &study.spectrum.modes {
@@ -118,6 +120,21 @@ fn inputs(file: &mut Printer, study: &Study) {
         let value = format!("{{ distribution = \"{}\"{parameters}{polynomials}{texts} }}", input.marginal.name());
         file.line(&input.name, value, unit);
     }
+}
+
+fn dependence(file: &mut Printer, study: &Study) {
+    let Some(DependenceSettings { measure, pairs }) = &study.dependence else { return };
+    file.table("dependence");
+    file.line("kind", format!("\"{KIND}\""), "of inputs; pairs that are not listed are independent");
+    let names: Vec<&str> = study.inputs.names().collect();
+    let pair = |&(one, other, value): &(usize, usize, f64)| {
+        format!("[{}, {}, {}]", text(names[one]), text(names[other]), float(value))
+    };
+    let explanation = match measure {
+        Measure::Spearman => "correlations of ranks",
+        Measure::Pearson => "correlations of values",
+    };
+    file.line(measure.name(), format!("[{}]", pairs.iter().map(pair).collect::<Vec<_>>().join(", ")), explanation);
 }
 
 /// A text in quotes, as TOML writes it.

@@ -18,6 +18,7 @@ pub(super) struct Study {
     pub seed: Option<Spanned<i64>>,
     pub model: Model,
     pub inputs: Spanned<Ordered<Input>>,
+    pub dependence: Option<Spanned<Dependence>>,
     #[serde(default)]
     pub spectrum: Spectrum,
     #[serde(default)]
@@ -130,6 +131,19 @@ pub(super) struct Input {
     pub unit: Option<Spanned<String>>,
     pub label: Option<Spanned<String>>,
 }
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Dependence {
+    pub kind: Spanned<String>,
+    pub spearman: Option<Spanned<Vec<Spanned<Pair>>>>,
+    pub pearson: Option<Spanned<Vec<Spanned<Pair>>>>,
+}
+
+/// Two inputs and their correlation.
+#[derive(Debug, Deserialize)]
+#[serde(expecting = "two inputs and their correlation, like [\"k\", \"c\", 0.6]")]
+pub(super) struct Pair(pub String, pub String, pub f64);
 
 /// A quantity relative to another: a number, or a text in percent.
 #[derive(Debug, Deserialize)]

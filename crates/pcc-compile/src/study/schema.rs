@@ -44,15 +44,38 @@ struct Study {
     seed: Option<i64>,
     /// The model that is run.
     model: Model,
-    /// The uncertain parameters, independent of each other. Their order is that of the standardized variables.
+    /// The uncertain parameters, independent of each other but for `dependence`. Their order is that of the
+    /// standardized variables.
     #[schemars(length(min = 1))]
     inputs: BTreeMap<String, Input>,
+    /// Which inputs depend on each other. Default: none.
+    dependence: Option<Dependence>,
     /// What of the spectrum is expanded, and what stable means.
     spectrum: Option<Spectrum>,
     /// Where the model is run.
     design: Option<Design>,
     /// How the surrogate is fitted.
     fit: Option<Fit>,
+}
+
+/// A Gaussian copula, by correlations of pairs of inputs: `spearman` or `pearson`, one of them. Pairs that are not
+/// listed are independent.
+#[derive(JsonSchema)]
+#[schemars(deny_unknown_fields)]
+struct Dependence {
+    /// The kind of dependence.
+    kind: DependenceKind,
+    /// Correlations of ranks: two inputs and a number between -1 and 1 each.
+    spearman: Option<Vec<(String, String, f64)>>,
+    /// Correlations of values: two inputs and a number between -1 and 1 each.
+    pearson: Option<Vec<(String, String, f64)>>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "kebab-case")]
+enum DependenceKind {
+    /// Normal scores of the inputs are jointly normal.
+    GaussianCopula,
 }
 
 /// The model. Which keys it has depends on its kind.

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use toml::Spanned;
 
+use super::dependence::refuse_quadrature;
 use super::error::{Place, StudyError};
 use super::model::Kind;
 use super::settings::{DesignKind, DesignSettings, FitSettings, SpectrumSettings};
@@ -48,6 +49,10 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     let places: Vec<Place> =
         raw.inputs.get_ref().0.iter().map(|(key, raw)| lines.place(format!("inputs.{key}"), raw)).collect();
     let inputs = lines.inputs(raw.inputs, kind)?;
+    let (dependence, inputs) = match &raw.dependence {
+        Some(raw) => lines.dependence(raw, inputs)?,
+        None => (None, inputs),
+    };
     let dimension = inputs.dimension();
     let spectrum = lines.spectrum(raw.spectrum, kind)?;
     let failure_place = raw.model.on_failure.as_ref().map(|word| lines.place("model.on_failure", word));
@@ -55,6 +60,9 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     let fit = lines.fit(raw.fit, spectrum.target, dimension, &model)?;
     if let Some(place) = failure_place.filter(|_| fit.method.is_quadrature() && model.skips_failures()) {
         return Err(StudyError::SkippingOfQuadrature { place });
+    }
+    if let Some(raw) = raw.dependence.filter(|_| dependence.is_some() && fit.method.is_quadrature()) {
+        return Err(refuse_quadrature(lines.place("dependence", &raw), fit.method.name()));
     }
     if let FitMethod::MultiElement(_) = fit.method
         && let Some(at) = inputs.inputs().iter().position(|input| !input.marginal.is_divisible())
@@ -72,7 +80,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     if derivatives && !fit.method.profile().is_least_squares && design.maximum > MOST_RUNS {
         return Err(StudyError::TooLargeDesign { maximum: design.maximum, most: MOST_RUNS });
     }
-    Ok(Study { name, seed, model, inputs, spectrum, design, fit })
+    Ok(Study { name, seed, model, inputs, dependence, spectrum, design, fit })
 }
 
 /// `"a", "b" or "c"`.

@@ -107,7 +107,15 @@ impl NestedLatinHypercube {
         (0..size as u64).filter(|&stratum| !occupied[stratum as usize]).collect()
     }
 
-    /// The points in standardized coordinates, `standardized_quantile(j, u)` mapping a unit number of input j.
+    /// The points in standardized coordinates: `place` replaces the unit numbers of a point by them.
+    pub fn placed(&self, place: impl Fn(&mut [f64])) -> Samples {
+        let mut coordinates: Vec<f64> = self.cells.iter().map(|&cell| unit_interval(cell)).collect();
+        coordinates.chunks_exact_mut(self.dimension).for_each(place);
+        Samples::new(self.dimension, coordinates)
+    }
+
+    /// The points in standardized coordinates of independent inputs, `standardized_quantile(j, u)` mapping a unit
+    /// number of input j.
     pub fn samples(&self, standardized_quantile: impl Fn(usize, f64) -> f64) -> Samples {
         let coordinates = self
             .cells

@@ -1,0 +1,418 @@
+//! The dependence of inputs: correlations of pairs, by rank or of the values, to a Gaussian copula.
+
+use super::error::{Place, StudyError};
+use super::raw;
+use super::validate::{Lines, alternatives};
+use crate::numerics::nearest_correlation::{nearest_correlation, smallest_eigenvalue};
+use nalgebra::DMatrix;
+use pcc_evaluate::probability::dependence::{CopulaError, GaussianCopula};
+use pcc_evaluate::probability::inputs::{InputSpace, pearson_of_scores, scores_of_pearson};
+use std::f64::consts::PI;
+use thiserror::Error;
+use toml::Spanned;
+
+/// The kind of dependence there is.
+pub(super) const KIND: &str = "gaussian-copula";
+
+/// The smallest eigenvalue of the matrix that is proposed: what rounding to [`DIGITS`] takes is much less.
+const PROPOSED: f64 = 1e-3;
+
+/// Decimals of the correlations that are proposed.
+const DIGITS: i32 = 5;
+
+/// Inputs for which a matrix is proposed, at most: more pairs nobody pastes.
+const MOST_PROPOSED: usize = 30;
+
+/// What the correlations of a study are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// Of the ranks of values: Spearman's ρ_s.
+    Spearman,
+    /// Of the values: Pearson's.
+    Pearson,
+}
+
+impl Measure {
+    /// Its key in study files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Spearman => "spearman",
+            Self::Pearson => "pearson",
+        }
+    }
+
+    /// The correlation of normal scores of two inputs, by position, that gives `value`.
+    ///
+    /// Of ranks of continuous variables it is 2 sin(π ρ_s/6), whatever their laws are (Kruskal 1958,
+    /// <https://doi.org/10.1080/01621459.1958.10501481>).
+    fn of_scores(self, inputs: &InputSpace, [one, other]: [usize; 2], value: f64) -> Result<f64, [f64; 2]> {
+        let law = |input: usize| &inputs.inputs()[input].marginal;
+        match self {
+            Self::Spearman => Ok(2.0 * (PI * value / 6.0).sin()),
+            Self::Pearson => scores_of_pearson(law(one), law(other), value),
+        }
+    }
+
+    /// The way back.
+    fn from_scores(self, inputs: &InputSpace, [one, other]: [usize; 2], value: f64) -> f64 {
+        let law = |input: usize| &inputs.inputs()[input].marginal;
+        match self {
+            Self::Spearman => 6.0 / PI * (0.5 * value).asin(),
+            Self::Pearson => pearson_of_scores(law(one), law(other), value),
+        }
+    }
+}
+
+/// A Gaussian copula as a study gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DependenceSettings {
+    /// What its correlations are of.
+    pub measure: Measure,
+    /// Positions of two inputs and their correlation, in the order of the inputs; none is zero.
+    pub pairs: Vec<(usize, usize, f64)>,
+}
+
+/// Why correlations of a study cannot be used.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DependenceError {
+    /// Two lists of correlations, or none.
+    #[error("give one list of correlations, spearman (of ranks) or pearson (of values), like [[\"k\", \"c\", 0.6]]")]
+    Lists,
+    /// A name that no input has.
+    #[error("there is no input {name}; the study has {known}")]
+    UnknownInput {
+        /// The name.
+        name: String,
+        /// The inputs.
+        known: String,
+    },
+    /// An input with itself.
+    #[error("{name} is correlated with itself; name two inputs")]
+    WithItself {
+        /// Its name.
+        name: String,
+    },
+    /// A pair that stands twice.
+    #[error("the correlation of {one} and {other} is given twice; keep one of them")]
+    Twice {
+        /// One input.
+        one: String,
+        /// The other.
+        other: String,
+    },
+    /// No correlation.
+    #[error("the correlation of {one} and {other} is {value:?}, but must be above -1 and below 1")]
+    Value {
+        /// One input.
+        one: String,
+        /// The other.
+        other: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A correlation that inputs with these laws cannot have.
+    #[error(
+        "the correlation of {one} and {other} is {value:?}, but with their laws it can only be between {least:.4} and \
+         {largest:.4}; choose one in between, or give the correlation of ranks (spearman)"
+    )]
+    Impossible {
+        /// One input.
+        one: String,
+        /// The other.
+        other: String,
+        /// Its value.
+        value: f64,
+        /// The least possible.
+        least: f64,
+        /// The largest possible.
+        largest: f64,
+    },
+    /// Correlations that contradict each other.
+    #[error(
+        "these correlations cannot hold together: the smallest eigenvalue of their matrix{}, but must be positive{}",
+        found(eigenvalue),
+        proposal(nearest)
+    )]
+    NotPositiveDefinite {
+        /// The smallest eigenvalue of the matrix of normal scores; `None` if it was not found.
+        eigenvalue: Option<f64>,
+        /// The nearest that can, as the line of the study; `None` for very many inputs.
+        nearest: Option<String>,
+    },
+    /// Too many inputs depend on each other.
+    #[error("{0}")]
+    TooMany(CopulaError),
+    /// A method that takes inputs as independent.
+    #[error(
+        "fit.method \"{method}\" by quadrature takes inputs to be independent; choose a method by regression (minimum-norm, \
+         stepwise, omp, auto, or gpc with solver = \"least-squares\"), or remove [dependence]"
+    )]
+    Quadrature {
+        /// The method.
+        method: &'static str,
+    },
+}
+
+fn found(eigenvalue: &Option<f64>) -> String {
+    eigenvalue.map_or_else(String::new, |value| format!(" is {value:.3e}"))
+}
+
+fn proposal(nearest: &Option<String>) -> String {
+    nearest.as_ref().map_or_else(String::new, |line| format!(". The nearest that can: {line}"))
+}
+
+impl Lines<'_> {
+    /// What the study says of dependence, if anything, and the inputs with it.
+    pub(super) fn dependence(
+        &self,
+        raw: &Spanned<raw::Dependence>,
+        inputs: InputSpace,
+    ) -> Result<(Option<DependenceSettings>, InputSpace), StudyError> {
+        let place = self.place("dependence", raw);
+        let raw::Dependence { kind, spearman, pearson } = raw.get_ref();
+        self.word("dependence.kind", kind, &[(KIND, ())])?;
+        let (measure, list) = match (spearman, pearson) {
+            (Some(list), None) => (Measure::Spearman, list),
+            (None, Some(list)) => (Measure::Pearson, list),
+            _ => return Err(StudyError::Dependence { place, cause: DependenceError::Lists }),
+        };
+        let (mut pairs, mut of_scores) = (Vec::new(), Vec::new());
+        for raw in list.get_ref() {
+            let refused = |cause| StudyError::Dependence {
+                place: self.place(format!("dependence.{}", measure.name()), raw),
+                cause,
+            };
+            let (pair, score) = pair(measure, raw.get_ref(), &inputs, &pairs).map_err(refused)?;
+            pairs.push(pair);
+            of_scores.push((pair.0, pair.1, score));
+        }
+        pairs.retain(|pair| pair.2 != 0.0);
+        if pairs.is_empty() {
+            return Ok((None, inputs));
+        }
+        pairs.sort_by_key(|pair| (pair.0, pair.1));
+        let place = self.place(format!("dependence.{}", measure.name()), list);
+        let inputs =
+            with_copula(measure, inputs, &of_scores).map_err(|cause| StudyError::Dependence { place, cause })?;
+        Ok((Some(DependenceSettings { measure, pairs }), inputs))
+    }
+}
+
+/// Positions of the inputs of a pair in order, with their correlation and that of their scores. `known` are those
+/// before it.
+fn pair(
+    measure: Measure,
+    raw: &raw::Pair,
+    inputs: &InputSpace,
+    known: &[(usize, usize, f64)],
+) -> Result<((usize, usize, f64), f64), DependenceError> {
+    let raw::Pair(one, other, value) = raw;
+    let position = |name: &String| {
+        let names: Vec<String> = inputs.names().map(str::to_owned).collect();
+        let unknown = || DependenceError::UnknownInput { name: name.clone(), known: alternatives(&names) };
+        inputs.names().position(|known| known == name).ok_or_else(unknown)
+    };
+    let (first, second) = (position(one)?, position(other)?);
+    if first == second {
+        return Err(DependenceError::WithItself { name: one.clone() });
+    }
+    let (first, second) = (first.min(second), first.max(second));
+    let (one, other) = (one.clone(), other.clone());
+    if known.iter().any(|pair| (pair.0, pair.1) == (first, second)) {
+        return Err(DependenceError::Twice { one, other });
+    }
+    // False for what is no number.
+    let is_correlation = value.abs() < 1.0;
+    if !is_correlation {
+        return Err(DependenceError::Value { one, other, value: *value });
+    }
+    match measure.of_scores(inputs, [first, second], *value) {
+        Ok(score) => Ok(((first, second, *value), score)),
+        Err([least, largest]) => Err(DependenceError::Impossible { one, other, value: *value, least, largest }),
+    }
+}
+
+fn with_copula(
+    measure: Measure,
+    inputs: InputSpace,
+    of_scores: &[(usize, usize, f64)],
+) -> Result<InputSpace, DependenceError> {
+    match GaussianCopula::new(inputs.dimension(), of_scores.iter().copied()) {
+        Ok(copula) => Ok(inputs.clone().with_dependence(copula).unwrap_or(inputs)),
+        Err(error @ CopulaError::TooMany { .. }) => Err(DependenceError::TooMany(error)),
+        Err(_) => Err(contradiction(measure, &inputs, of_scores)),
+    }
+}
+
+/// What is wrong with correlations that cannot hold together, and what could.
+fn contradiction(measure: Measure, inputs: &InputSpace, of_scores: &[(usize, usize, f64)]) -> DependenceError {
+    let mut members: Vec<usize> = of_scores.iter().flat_map(|pair| [pair.0, pair.1]).collect();
+    members.sort_unstable();
+    members.dedup();
+    let position = |input: usize| members.partition_point(|&member| member < input);
+    let mut matrix = DMatrix::identity(members.len(), members.len());
+    for &(one, other, value) in of_scores {
+        let (i, k) = (position(one), position(other));
+        (matrix[(i, k)], matrix[(k, i)]) = (value, value);
+    }
+    let near = (members.len() <= MOST_PROPOSED).then(|| nearest_correlation(&matrix, PROPOSED)).flatten();
+    let line = |near: DMatrix<f64>| {
+        let scale = 10f64.powi(DIGITS);
+        let names: Vec<&str> = inputs.names().collect();
+        let mut pairs = Vec::new();
+        for (i, &one) in members.iter().enumerate() {
+            for (k, &other) in members.iter().enumerate().skip(i + 1) {
+                let value = measure.from_scores(inputs, [one, other], near[(i, k)]);
+                let rounded = (value * scale).round() / scale;
+                if rounded != 0.0 {
+                    pairs.push(format!("[\"{}\", \"{}\", {rounded:?}]", names[one], names[other]));
+                }
+            }
+        }
+        format!("{} = [{}]", measure.name(), pairs.join(", "))
+    };
+    DependenceError::NotPositiveDefinite { eigenvalue: smallest_eigenvalue(&matrix), nearest: near.map(line) }
+}
+
+/// Refuses a fit by quadrature.
+pub(super) fn refuse_quadrature(place: Place, method: &'static str) -> StudyError {
+    StudyError::Dependence { place, cause: DependenceError::Quadrature { method } }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::study::{Study, StudyError};
+
+    /// Inputs with laws of four kinds.
+    fn study(dependence: &str) -> Result<Study, StudyError> {
+        Study::from_toml(&format!(
+            "format = 1\nname = \"s\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nC = [[\"0 - a - b - c - d\"]]\nK = \
+             [[100]]\n[inputs]\na = {{ distribution = \"normal\", mean = 1.0, std = 0.1 }}\nb = {{ distribution = \
+             \"lognormal\", mean = 1.0, std = 1.0 }}\nc = {{ distribution = \"uniform\", lower = 0.0, upper = 1.0 }}\nd = \
+             {{ distribution = \"lognormal\", mean = 2.0, std = 2.0 }}\n{dependence}"
+        ))
+    }
+
+    fn copula(lines: &str) -> String {
+        format!("[dependence]\nkind = \"gaussian-copula\"\n{lines}\n")
+    }
+
+    fn refusal(dependence: &str) -> String {
+        study(dependence).unwrap_err().to_string()
+    }
+
+    fn scores(lines: &str) -> Vec<(usize, usize, f64)> {
+        let study = study(&copula(lines)).unwrap();
+        let correlations = study.inputs.dependence().unwrap().correlations();
+        correlations.iter().map(|pair| (pair.first, pair.second, pair.value)).collect()
+    }
+
+    #[test]
+    fn correlations_of_ranks_and_of_values_are_those_of_normal_scores() {
+        let by_rank = scores("spearman = [[\"c\", \"a\", 0.6], [\"b\", \"d\", -0.5]]");
+        assert_eq!(by_rank.iter().map(|pair| (pair.0, pair.1)).collect::<Vec<_>>(), [(0, 2), (1, 3)]);
+        // 2 sin(0.1 π) is the golden ratio less 1; 2 sin(−π/12) = (1 − √3)/√2.
+        assert!((by_rank[0].2 - 0.618_033_988_749_894_9).abs() < 1e-15);
+        assert!((by_rank[1].2 - (1.0 - 3f64.sqrt()) / 2f64.sqrt()).abs() < 1e-15);
+        let by_value = scores("pearson = [[\"a\", \"c\", 0.6], [\"b\", \"d\", 0.5]]");
+        assert!((by_value[0].2 - 0.6 * (std::f64::consts::PI / 3.0).sqrt()).abs() < 1e-13);
+        // Both have σ² = ln 2: ρ = ln(1 + 0.5 (e^σ² − 1))/σ².
+        assert!((by_value[1].2 - 1.5f64.ln() / 2f64.ln()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn dependence_is_printed_and_hashed_as_it_is_given() {
+        let plain = study("").unwrap();
+        let first = study(&copula("spearman = [[\"a\", \"b\", 0.3], [\"d\", \"c\", -0.123456789]]")).unwrap();
+        let again = Study::from_toml(&first.to_toml()).unwrap();
+        assert_eq!(again, first, "{}", first.to_toml());
+        assert!(first.to_toml().contains("spearman = [[\"a\", \"b\", 0.3], [\"c\", \"d\", -0.123456789]]"));
+        assert_eq!((again.problem_hash(), again.study_hash()), (first.problem_hash(), first.study_hash()));
+        assert_eq!(first.model_hash(), plain.model_hash(), "runs stay what they are");
+        let turned = study(&copula("spearman = [[\"c\", \"d\", -0.123456789], [\"b\", \"a\", 0.3]]")).unwrap();
+        assert_eq!((turned.problem_hash(), &turned), (first.problem_hash(), &first));
+        let others = [
+            "",
+            &copula("spearman = [[\"a\", \"b\", 0.3], [\"d\", \"c\", -0.1234]]"),
+            &copula("spearman = [[\"a\", \"b\", 0.3], [\"d\", \"a\", -0.123456789]]"),
+            &copula("pearson = [[\"a\", \"b\", 0.3], [\"d\", \"c\", -0.123456789]]"),
+        ];
+        for other in others {
+            let other = study(other).unwrap();
+            assert!(other.problem_hash() != first.problem_hash() && !other.inputs.is_same_as(&first.inputs));
+        }
+        for independent in ["spearman = []", "pearson = [[\"a\", \"b\", 0.0]]"] {
+            let independent = study(&copula(independent)).unwrap();
+            assert_eq!((independent.problem_hash(), &independent), (plain.problem_hash(), &plain));
+        }
+    }
+
+    #[test]
+    fn what_is_no_dependence_is_refused_with_key_and_line() {
+        for (lines, expected) in [
+            ("", "line 13: dependence: give one list of correlations"),
+            ("spearman = []\npearson = []", "line 13: dependence: give one list"),
+            (
+                "spearman = [[\"a\", \"x\", 0.5]]",
+                "line 15: dependence.spearman: there is no input x; the study has a, b, c or d",
+            ),
+            (
+                "pearson = [[\"a\", \"b\", 0.5],\n[\"b\", \"b\", 0.5]]",
+                "line 16: dependence.pearson: b is correlated with itself",
+            ),
+            ("spearman = [[\"a\", \"b\", 0.5], [\"b\", \"a\", 0.5]]", "correlation of b and a is given twice"),
+            ("spearman = [[\"a\", \"b\", 1.0]]", "correlation of a and b is 1.0, but must be above -1 and below 1"),
+            ("spearman = [[\"a\", \"b\", -2]]", "is -2.0, but must be above -1"),
+            ("spearman = [[\"a\", \"b\", nan]]", "is NaN, but must be above -1"),
+            ("spearman = [[\"a\", \"b\", inf]]", "is inf, but must be above -1"),
+            ("pearson = [[\"b\", \"d\", -0.6]]", "it can only be between -0.5000 and 1.0000"),
+            ("pearson = [[\"a\", \"b\", 0.9]]", "it can only be between -0.8326 and 0.8326"),
+            ("spearman = [[\"a\", \"b\"]]", "two inputs and their correlation, like [\"k\", \"c\", 0.6]"),
+            ("spearman = [[\"a\", 0.5]]", "expected a text in quotes"),
+            ("spearman = [[\"a\", \"b\", \"0.5\"]]", "expected a number"),
+            ("spearman = \"a\"", "expected a list"),
+            ("kendall = [[\"a\", \"b\", 0.5]]", "unknown key `kendall`"),
+            ("spearman = [[\"a\", \"b\", 0.99999999999999]]", "cannot hold together"),
+        ] {
+            let message = refusal(&copula(lines));
+            assert!(message.contains(expected), "{lines}: {message}");
+        }
+        assert!(refusal("[dependence]\nkind = \"vine\"\nspearman = []").contains("choose \"gaussian-copula\""));
+        assert!(refusal("[dependence]\nspearman = []").contains("missing key `kind`; add it"));
+    }
+
+    /// 0.7, 0.7 and −0.6 contradict each other; what is proposed can be pasted.
+    #[test]
+    fn contradictions_are_refused_with_the_nearest_that_can_hold() {
+        for measure in ["spearman", "pearson"] {
+            let lines = format!("{measure} = [[\"a\", \"c\", 0.7], [\"c\", \"b\", 0.7], [\"a\", \"b\", -0.6]]");
+            let message = refusal(&copula(&lines));
+            let expected =
+                format!("line 15: dependence.{measure}: these correlations cannot hold together: the smallest");
+            assert!(message.contains(&expected) && message.contains("is -"), "{message}");
+            let (_, proposed) = message.split_once("The nearest that can: ").unwrap();
+            let found = study(&copula(proposed)).unwrap_or_else(|error| panic!("{proposed}: {error}"));
+            let pairs = found.dependence.unwrap().pairs;
+            let near = [(0, 1, -0.6), (0, 2, 0.7), (1, 2, 0.7)];
+            for (found, given) in pairs.iter().zip(near) {
+                assert!((found.0, found.1) == (given.0, given.1) && (found.2 - given.2).abs() < 0.6, "{pairs:?}");
+                assert!(found.2.abs() < given.2.abs(), "{pairs:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn quadrature_is_refused() {
+        let dependence = copula("spearman = [[\"a\", \"b\", 0.5]]");
+        for fit in ["method = \"gpc\"\nmax_degree = 3\nsolver = \"quadrature\"", "method = \"me-gpc\"\nmax_degree = 2"]
+        {
+            let message = refusal(&format!("{dependence}[fit]\n{fit}\n"));
+            assert!(
+                message.contains("line 13: dependence: fit.method") && message.contains("independent"),
+                "{message}"
+            );
+        }
+        let regression = format!("{dependence}[fit]\nmethod = \"gpc\"\nmax_degree = 3\nsolver = \"least-squares\"\n");
+        assert!(study(&regression).is_ok());
+    }
+}
