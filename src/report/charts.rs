@@ -1,6 +1,7 @@
 //! The pictures of a surrogate.
 
 use super::sensitivity::{Bounded, IndexPair, SensitivityReport};
+use super::shapley::{InputEffects, ShapleyReport};
 use num_complex::Complex;
 use pcc_charts::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol};
 use pcc_evaluate::components::{Block, Label};
@@ -71,6 +72,9 @@ pub(super) fn validation_chart(model: &[f64], surrogate: &[f64]) -> Chart {
     }
 }
 
+/// What coefficients say where inputs depend on each other.
+const INDEPENDENT: &str = " The standard deviation is that of independent inputs with the same laws.";
+
 /// What each total degree contributes to each component.
 pub(super) fn spectrum_chart(surrogate: &Surrogate) -> Chart {
     let moments = surrogate.moments();
@@ -90,7 +94,8 @@ pub(super) fn spectrum_chart(surrogate: &Surrogate) -> Chart {
         description:
             "Root of the sum of squared coefficients of each total degree, relative to the standard deviation of the \
                       component, over all elements: the faster it falls, the smoother the component."
-                .to_owned(),
+                .to_owned()
+                + if surrogate.inputs.dependence().is_some() { INDEPENDENT } else { "" },
         x: Axis::categories("total degree |α|", degrees),
         y: Axis::logarithmic("share of the standard deviation"),
         series: series.collect(),
@@ -155,6 +160,41 @@ pub(super) fn mode_charts(input: &Input, x: &[f64], labels: &[Label], block: &Bl
             Vec::new(),
         ),
     ]
+}
+
+/// Shapley effects as bars: on max Re λ, and on stability itself.
+pub(super) fn shapley_charts(report: &ShapleyReport) -> Vec<Chart> {
+    type Part = fn(&InputEffects) -> Option<Bounded>;
+    let parts: [(&str, Part); 2] = [
+        ("Shapley effects on max Re λ", |input| input.max_re),
+        ("Shapley effects on stability", |input| input.stability),
+    ];
+    let names: Vec<String> = report.inputs.iter().map(|input| input.input.clone()).collect();
+    let chart = |(title, part): (&str, Part)| {
+        let effects: Option<Vec<Bounded>> = report.inputs.iter().map(part).collect();
+        let bar = |(category, Bounded { value, lower, upper }): (usize, Bounded)| Bar {
+            category,
+            value: short(value),
+            interval: Some((short(lower), short(upper))),
+        };
+        Some(Chart {
+            title: title.to_owned(),
+            description: format!(
+                "{title}: the share of its variance that knowing an input takes away, on average over all orders in which \
+                 inputs become known, with {:.0} % intervals. Inputs depend on each other.",
+                100.0 * report.level
+            ),
+            x: Axis::linear("share of the variance"),
+            y: Axis::categories("", names.clone()),
+            series: vec![Series::new(
+                "",
+                Color::Blue,
+                Marks::Bars(effects?.into_iter().enumerate().map(bar).collect()),
+            )],
+            guides: Vec::new(),
+        })
+    };
+    parts.into_iter().filter_map(chart).collect()
 }
 
 /// Sobol' indices as bars: of max Re λ, and of stability itself.

@@ -1,5 +1,6 @@
 //! A surrogate judged against its model.
 
+use super::dependence::DependenceReport;
 use super::layout::{Facts, width, write_verdict, write_warnings};
 use super::numbers::{share, significant};
 use super::survey::LEVEL;
@@ -62,6 +63,9 @@ pub struct CompareReport {
     pub largest_mean_error_percent: Option<f64>,
     /// Largest error of the variance of Re λ among the modes: the paper's variance error.
     pub largest_variance_error_percent: Option<f64>,
+    /// How inputs depend on each other; absent if they do not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dependence: Option<DependenceReport>,
     /// Every component.
     pub components: Vec<ComponentErrors>,
     /// Wall-clock time.
@@ -130,6 +134,7 @@ impl CompareReport {
             rigid_body_modes: comparison.rigid_body_modes,
             largest_mean_error_percent: largest(|component| component.mean_error_percent),
             largest_variance_error_percent: largest(|component| component.variance_error_percent),
+            dependence: DependenceReport::of(&surrogate.inputs),
             components,
             elapsed_seconds,
         };
@@ -194,6 +199,9 @@ impl CompareReport {
                 format!("{} of the eigenvalues, zero and left out", self.rigid_body_modes),
                 "",
             );
+        }
+        if let Some(dependence) = &self.dependence {
+            facts.add("dependence", dependence.in_words(), "correlations of ranks");
         }
         let marginal = match self.falsely_marginal {
             0 => String::new(),

@@ -2,15 +2,17 @@
 
 use super::confidence::Confidence;
 use super::coverage::Bounds;
+use super::dependence::DependenceReport;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
+use super::shapley::ShapleyReport;
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
 use pcc_compile::reference::Reference;
 use pcc_evaluate::components::{EigenvalueSummary, Label, Margin, Output, Summary};
 use pcc_evaluate::evaluation::{Condition, Question, Sampler};
 use pcc_evaluate::foundation::count;
-use pcc_evaluate::probability::inputs::Input;
+use pcc_evaluate::probability::inputs::{Input, InputSpace};
 use pcc_evaluate::probability::statistics::{Interval, Moments, Proportion, Share};
 use pcc_evaluate::session::Evaluation;
 use pcc_evaluate::surrogate::{Quantile, Surrogate};
@@ -41,6 +43,9 @@ pub struct EvalReport {
     pub replicates: u32,
     /// Inputs that are confined or fixed.
     pub conditions: Vec<Condition>,
+    /// How inputs depend on each other; absent if they do not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dependence: Option<DependenceReport>,
     /// Number of stable samples: the largest Re λ, with the margin, is negative.
     pub stable_samples: u64,
     /// Their share.
@@ -84,8 +89,11 @@ pub struct EvalReport {
     pub real_eigenvalues: Vec<RealReport>,
     /// Every component.
     pub components: Vec<ComponentReport>,
-    /// Sobol' indices of what decides stability; absent for a model.
+    /// Sobol' indices of what decides stability; absent for a model, and where inputs depend on each other.
     pub sensitivity: Option<SensitivityReport>,
+    /// Shapley effects on what decides stability, where inputs depend on each other; absent elsewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shapley: Option<ShapleyReport>,
     /// The critical value of an input, if asked for.
     pub critical: Option<CriticalReport>,
     /// Other events that were counted.
@@ -197,7 +205,7 @@ pub struct ComponentReport {
     /// Statistics of the samples.
     #[serde(flatten)]
     pub samples: Statistics,
-    /// The same moments exactly, and Sobol' indices; absent for a model.
+    /// The same moments exactly, and Sobol' indices; absent for a model, and where inputs depend on each other.
     #[serde(flatten)]
     pub analysis: Option<Analysis>,
 }
@@ -244,7 +252,7 @@ impl EvalReport {
         let (name, summary) = (&surrogate.provenance.study_name, &cell.total.summary);
         let mut report = Self::new(name, "surrogate", &surrogate.outputs, summary, question.seed, *elapsed_seconds);
         let is_whole = question.conditions.is_empty();
-        if is_whole {
+        if is_whole && surrogate.inputs.dependence().is_none() {
             for (component, analysis) in report.components.iter_mut().zip(analyses(surrogate)) {
                 component.analysis = Some(analysis);
             }
@@ -266,6 +274,7 @@ impl EvalReport {
             inputs: surrogate.inputs.inputs().to_vec(),
         };
         report.conditions = question.conditions.clone();
+        report.dependence = DependenceReport::of(&surrogate.inputs);
         report.standard_error = share.standard_error;
         let interval = |hits: fn(&Summary) -> u64| cell.share(LEVEL, |tally| hits(&tally.summary)).interval;
         report.intervals = Intervals {
@@ -287,6 +296,11 @@ impl EvalReport {
             let mut sensitivity = SensitivityReport::new(surrogate.inputs.names(), indices);
             sensitivity.inputs.retain(|input| free(&input.input.as_str()));
             sensitivity
+        });
+        report.shapley = found.effects.as_ref().map(|effects| {
+            let mut shapley = ShapleyReport::new(surrogate.inputs.names(), effects);
+            shapley.inputs.retain(|input| free(&input.input.as_str()));
+            shapley
         });
         let inputs = surrogate.inputs.inputs();
         report.critical = found.critical.as_ref().map(|(input, values)| CriticalReport::new(&inputs[*input], values));
@@ -319,6 +333,12 @@ impl EvalReport {
         report
     }
 
+    /// The same, which says how these inputs depend on each other.
+    #[must_use]
+    pub fn with_dependence_of(self, inputs: &InputSpace) -> Self {
+        Self { dependence: DependenceReport::of(inputs), ..self }
+    }
+
     fn new(
         study: &str,
         source: &'static str,
@@ -347,6 +367,7 @@ impl EvalReport {
             sampler: Sampler::MonteCarlo.name(),
             replicates: 1,
             conditions: Vec::new(),
+            dependence: None,
             stable_samples: stable.hits,
             stable_proportion: stable.value(),
             marginal_proportion: proportion(marginal).value(),
@@ -382,6 +403,7 @@ impl EvalReport {
                 })
                 .collect(),
             sensitivity: None,
+            shapley: None,
             critical: None,
             events: Vec::new(),
             histograms: Vec::new(),

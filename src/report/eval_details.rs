@@ -39,6 +39,9 @@ impl EvalReport {
         if let Some(sensitivity) = &self.sensitivity {
             write!(f, "{sensitivity:columns$}")?;
         }
+        if let Some(shapley) = &self.shapley {
+            write!(f, "{shapley:columns$}")?;
+        }
         let sobol = self.sobol_table(columns);
         if sobol.is_empty() { Ok(()) } else { write!(f, "\n{sobol}") }
     }

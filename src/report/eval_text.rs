@@ -128,12 +128,11 @@ impl EvalReport {
             let verb = if never.len() == 1 { "is" } else { "are" };
             writeln!(f, "{} {verb} never unstable", modes_text(&never))?;
         }
-        match self
-            .sensitivity
-            .as_ref()
-            .filter(|_| self.unstable_proportion > 0.0)
-            .and_then(|found| found.causes(CAUSES))
-        {
+        let causes = || {
+            let of_indices = self.sensitivity.as_ref().and_then(|found| found.causes(CAUSES));
+            of_indices.or_else(|| self.shapley.as_ref().and_then(|found| found.causes(CAUSES)))
+        };
+        match (self.unstable_proportion > 0.0).then(causes).flatten() {
             Some(causes) => write!(f, "\n{causes:columns$}"),
             None => Ok(()),
         }
@@ -210,6 +209,13 @@ impl EvalReport {
         }
         if !self.conditions.is_empty() {
             facts.add("where", conditions_text(&self.conditions, &self.only_in_text.inputs), "");
+        }
+        if let Some(dependence) = &self.dependence {
+            let words = match self.source != "model" && self.complete && self.shapley.is_none() {
+                true => "correlations of ranks; no Shapley effects where one of them is confined to an interval",
+                false => "correlations of ranks",
+            };
+            facts.add("dependence", dependence.in_words(), words);
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::build::{level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::confidence::error_words;
+use super::dependence::DependenceReport;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
 use super::layout::{Facts, width, write_verdict, write_warnings};
@@ -78,6 +79,9 @@ pub struct InspectReport {
     pub band: Option<String>,
     /// The uncertain inputs.
     pub inputs: Vec<InputReport>,
+    /// How they depend on each other; absent if they do not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dependence: Option<DependenceReport>,
     /// Fit of every component.
     pub components: Vec<FitReport>,
     /// What to know before trusting the surrogate.
@@ -167,6 +171,7 @@ impl InspectReport {
             tolerance: surrogate.verdict.tolerance,
             band: outside_band(surrogate),
             inputs: surrogate.inputs.inputs().iter().map(input).collect(),
+            dependence: DependenceReport::of(&surrogate.inputs),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
@@ -266,6 +271,9 @@ impl InspectReport {
         }
         if let Some(band) = &self.band {
             facts.add("frequencies", band.clone(), "");
+        }
+        if let Some(dependence) = &self.dependence {
+            facts.add("dependence", dependence.in_words(), "correlations of ranks");
         }
         let test = if self.self_test_holds() { "holds" } else { "FAILS" };
         facts.add("self-test", test, format!("largest difference {}", significant(self.self_test_difference, 2)));

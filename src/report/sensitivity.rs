@@ -60,11 +60,9 @@ pub struct Bounded {
 impl SensitivityReport {
     /// The report for inputs with these names.
     pub fn new<'a>(names: impl Iterator<Item = &'a str>, found: &Sensitivities) -> Self {
-        let bounded =
-            |estimate: Estimate| Bounded { value: estimate.value, lower: estimate.lower, upper: estimate.upper };
         let pair = |indices: &Option<Vec<Sensitivity>>, j: usize| {
             let index = indices.as_ref()?.get(j)?;
-            Some(IndexPair { first: bounded(index.first), total: bounded(index.total) })
+            Some(IndexPair { first: index.first.into(), total: index.total.into() })
         };
         let input = |(j, name): (usize, &str)| InputSensitivity {
             input: name.to_owned(),
@@ -90,7 +88,7 @@ impl SensitivityReport {
     pub(super) fn ranked_for_stability(&self) -> Option<Vec<(&str, f64)>> {
         let known = |j: usize| {
             let total = self.inputs[j].stability?.total;
-            (total.half_width() <= VAGUE).then_some((self.inputs[j].input.as_str(), total.value))
+            total.says_something().then_some((self.inputs[j].input.as_str(), total.value))
         };
         self.order().into_iter().map(known).collect()
     }
@@ -116,12 +114,23 @@ impl Bounded {
     fn half_width(&self) -> f64 {
         (self.value - self.lower).max(self.upper - self.value)
     }
+
+    /// Whether the interval is narrow enough.
+    pub(super) fn says_something(&self) -> bool {
+        self.half_width() <= VAGUE
+    }
+}
+
+impl From<Estimate> for Bounded {
+    fn from(Estimate { value, lower, upper }: Estimate) -> Self {
+        Self { value, lower, upper }
+    }
 }
 
 /// An index with its interval, if it says something.
-fn cell(value: Option<Bounded>) -> String {
+pub(super) fn cell(value: Option<Bounded>) -> String {
     value
-        .filter(|found| found.half_width() <= VAGUE)
+        .filter(Bounded::says_something)
         .map_or("–".to_owned(), |found| format!("{:.3} ± {:.3}", found.value, found.half_width()))
 }
 

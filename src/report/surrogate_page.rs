@@ -1,6 +1,6 @@
 //! A surrogate on one page: the answer and how sure it is, what the surrogate is made of, and pictures.
 
-use super::charts::{density_chart, mode_charts, sobol_charts, spectrum_chart, validation_chart};
+use super::charts::{density_chart, mode_charts, shapley_charts, sobol_charts, spectrum_chart, validation_chart};
 use super::compare::CompareReport;
 use super::eval::EvalReport;
 use super::inspect::InspectReport;
@@ -96,19 +96,23 @@ impl SurrogatePage<'_> {
         if let Some(sensitivity) = &self.eval.sensitivity {
             charts.extend(sobol_charts(sensitivity));
         }
+        if let Some(shapley) = &self.eval.shapley {
+            charts.extend(shapley_charts(shapley));
+        }
         page.charts(&charts);
     }
 
     fn modes(&self, page: &mut Page) {
         page.section("Modes over the most influential inputs");
-        let inputs: Vec<usize> = match &self.eval.sensitivity {
-            Some(sensitivity) => sensitivity.order().into_iter().take(DRAWN_INPUTS).collect(),
-            None => (0..self.surrogate.inputs.dimension().min(DRAWN_INPUTS)).collect(),
+        let inputs: Vec<usize> = match (&self.eval.sensitivity, &self.eval.shapley) {
+            (Some(sensitivity), _) => sensitivity.order(),
+            (None, Some(shapley)) => shapley.order(),
+            (None, None) => (0..self.surrogate.inputs.dimension()).collect(),
         };
         let shown = self.points.len().min(SCATTER);
         let mut charts = Vec::new();
         let few = self.block.first(shown);
-        for j in inputs {
+        for j in inputs.into_iter().take(DRAWN_INPUTS) {
             let input = &self.surrogate.inputs.inputs()[j];
             let x: Vec<f64> = self.points[..shown].iter().map(|point| input.marginal.physical(point[j])).collect();
             charts.extend(mode_charts(input, &x, &self.surrogate.labels(), &few));

@@ -1,6 +1,7 @@
 //! The stability proportion along one input, or over two.
 
 use super::coverage::Bounds;
+use super::dependence::DependenceReport;
 use super::eval::QuantileReport;
 use super::judgement::judged_by;
 use super::survey::{EventReport, LEVEL, events};
@@ -40,6 +41,9 @@ pub struct SweepReport {
     pub replicates: u32,
     /// Inputs that are confined or fixed.
     pub conditions: Vec<Condition>,
+    /// How inputs depend on each other; absent if they do not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dependence: Option<DependenceReport>,
     /// Inputs that are swept, one or more.
     pub sweeps: Vec<Sweep>,
     /// The points, the last sweep varying fastest.
@@ -137,6 +141,7 @@ impl SweepReport {
             sampler: question.sampler.name(),
             replicates: question.replicates,
             conditions: question.conditions.clone(),
+            dependence: DependenceReport::of(&surrogate.inputs),
             sweeps: question.sweeps.clone(),
             points: answer.cells.iter().enumerate().map(point).collect(),
             max_re_residuals: residuals.iter().map(|q| QuantileReport { level: q.level, value: q.value }).collect(),

@@ -74,6 +74,9 @@ impl SweepReport {
         if self.sampler != Sampler::MonteCarlo.name() {
             facts.add("sampler", format!("{}, {} replicates", self.sampler, self.replicates), "");
         }
+        if let Some(dependence) = &self.dependence {
+            facts.add("dependence", dependence.in_words(), "correlations of ranks");
+        }
         if !self.conditions.is_empty() {
             facts.add("where", conditions_text(&self.conditions, &self.inputs), "");
         }

@@ -4,6 +4,7 @@ use super::eval::{EvalReport, ModeReport, RealReport};
 use super::judgement::MarginReport;
 use super::numbers::{plain, share, share_range, significant};
 use super::sensitivity::SensitivityReport;
+use super::shapley::ShapleyReport;
 use super::survey::conditions_text;
 use pcc_evaluate::foundation::plural;
 
@@ -44,7 +45,9 @@ impl EvalReport {
         let mut reasons = Vec::new();
         if self.unstable_proportion > 0.0 {
             reasons.extend(self.instabilities());
-            reasons.extend(self.sensitivity.as_ref().and_then(deciding_inputs));
+            let indices = self.sensitivity.as_ref().and_then(SensitivityReport::ranked_for_stability);
+            let effects = self.shapley.as_ref().and_then(ShapleyReport::ranked_for_stability);
+            reasons.extend(indices.or(effects).and_then(|ranked| deciding_inputs(&ranked)));
         }
         let reasons = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join("; ")) };
         format!("{}{where_asked} {}{reasons}.{}", self.study, self.shares(), self.unknown())
@@ -144,8 +147,7 @@ impl EvalReport {
 }
 
 /// The inputs that decide stability: the first, and those that do about as much. Nothing if that is not known.
-fn deciding_inputs(sensitivity: &SensitivityReport) -> Option<String> {
-    let ranked = sensitivity.ranked_for_stability()?;
+fn deciding_inputs(ranked: &[(&str, f64)]) -> Option<String> {
     let first = ranked.first().filter(|(_, total)| *total > 0.0)?.1;
     let names: Vec<&str> =
         ranked.iter().filter(|(_, total)| *total >= AS_WELL * first).map(|(name, _)| *name).collect();

@@ -54,9 +54,12 @@ impl Bytes {
     fn bounds(&mut self) -> Value {
         self.fields(&[("lower", &Self::float), ("upper", &Self::float)])
     }
-    fn tagged(&mut self, name: &str, fields: &[Field]) -> Value {
-        assert_eq!(self.u32(), 0, "only the first kind of {name} is in this file");
-        json!({ name: self.fields(fields) })
+    /// A kind with fields of its own, or with none.
+    fn tagged(&mut self, kinds: &[(&str, &[Field])]) -> Value {
+        match kinds[self.u32() as usize] {
+            (name, []) => json!(name),
+            (name, fields) => json!({ name: self.fields(fields) }),
+        }
     }
 }
 
@@ -83,17 +86,22 @@ fn meta(b: &mut B) -> Value {
 fn inputs(b: &mut B) -> Value {
     let interval: [Field; 2] = [("lower", &B::float), ("upper", &B::float)];
     let affine: [Field; 2] = [("center", &B::float), ("half_width", &B::float)];
+    let parameter = |b: &mut B| b.fields(&[("name", &B::text), ("value", &B::float)]);
+    let law: [Field; 2] = [("name", &B::text), ("parameters", &|b| b.list(parameter))];
+    let correlation = |b: &mut B| b.fields(&[("first", &u32_number), ("second", &u32_number), ("value", &B::float)]);
+    let copula: [Field; 1] = [("correlations", &|b| b.list(correlation))];
     let input = |b: &mut B| {
         b.fields(&[
             ("name", &B::text),
-            ("distribution", &|b| b.tagged("uniform", &interval)),
-            ("transform", &|b| b.tagged("affine", &affine)),
-            ("family", &|b| b.kind(&["legendre"])),
+            ("distribution", &|b| b.tagged(&[("uniform", &interval), ("law", &law)])),
+            ("transform", &|b| b.tagged(&[("affine", &affine), ("of_law", &[])])),
+            ("family", &|b| b.kind(&["legendre", "hermite", "truncated_normal"])),
             ("recurrence", &|b| b.fields(&[("diagonal", &B::floats), ("off_diagonal", &B::floats)])),
             ("bounds", &|b| b.option(B::bounds)),
         ])
     };
-    b.fields(&[("inputs", &|b| b.list(input)), ("dependence", &|b| b.kind(&["independent"]))])
+    let dependence: Field = ("dependence", &|b| b.tagged(&[("independent", &[]), ("gaussian_copula", &copula)]));
+    b.fields(&[("inputs", &|b| b.list(input)), dependence])
 }
 
 /// Section 3 in version 2.
@@ -313,6 +321,18 @@ fn it_reads_units_and_labels() {
         { "unit": "N/m", "label": "contact stiffness" },
     ]);
     assert_eq!(found["descriptions"]["inputs"], expected);
+}
+
+#[test]
+fn it_reads_laws_and_dependence() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::dependence::surrogate();
+    let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(&surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    assert_eq!(found["inputs"]["inputs"][0]["distribution"]["law"]["name"], "normal");
+    let expected = json!({ "gaussian_copula": { "correlations": [{ "first": 0, "second": 1, "value": 0.6 }] } });
+    assert_eq!(found["inputs"]["dependence"], expected);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod clutch_reference;
 mod command_line;
 mod coverage;
 mod defaults;
+mod dependence;
 mod derivatives;
 mod described;
 mod determinism;

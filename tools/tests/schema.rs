@@ -115,7 +115,8 @@ fn the_schema_has_the_keys_of_the_reader_and_explains_each() {
     assert_eq!(known_keys(&format!("{head}{rest}k_p = {{ surprise = 1 }}\n")), keys("Input"));
     assert_eq!(known_keys(&format!("{head}{rest}[spectrum]\nsurprise = 1\n")), keys("Spectrum"));
     assert_eq!(known_keys(&format!("{head}{rest}[design]\nsurprise = 1\n")), keys("Design"));
-    for name in ["", "Model", "Term", "Input", "Spectrum", "Design", "Fit"] {
+    assert_eq!(known_keys(&format!("{head}{rest}[dependence]\nsurprise = 1\n")), keys("Dependence"));
+    for name in ["", "Model", "Term", "Input", "Dependence", "Spectrum", "Design", "Fit"] {
         for (key, value) in table(name) {
             let meaning = value["description"].as_str().unwrap_or_default();
             assert!(!meaning.is_empty() && !meaning.starts_with("Of:"), "{name}: {key} is not explained");
@@ -133,6 +134,8 @@ fn what_commands_print_satisfies_their_schemas() {
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("points.csv", "mu,k_p\n0.25,16e6\n0.0,15.2e6\n");
     write("answers.csv", "mu,k_p\n");
+    let dependence = "[dependence]\nkind = \"gaussian-copula\"\nspearman = [[\"mu\", \"k_p\", 0.5]]\n";
+    write("d.toml", &(fs::read_to_string(root().join("surrogates/clutch-r2.toml")).unwrap() + dependence));
     write(
         "t.toml",
         "format = 1\nname = \"t\"\n[model]\nkind = \"table\"\neigenvalues = 2\n[inputs]\nx = { distribution = \
@@ -177,6 +180,13 @@ fn what_commands_print_satisfies_their_schemas() {
         "report s.pcc -n 1000 --runs 20",
         "reproduce --only figure3",
         "convert s.pcc s.json",
+        "build d.toml -o d.pcc",
+        "eval d.pcc -n 1000",
+        "eval d.pcc -n 100 --sweep mu=0..0.2:3 --where k_p=16e6",
+        "reference d.toml -n 50",
+        "compare d.pcc --study d.toml -n 100",
+        "inspect d.pcc",
+        "convert d.pcc d.json",
         "design t.toml --emit rows.csv",
         "version",
         "version --verbose",

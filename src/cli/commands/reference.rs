@@ -67,7 +67,8 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         .inspect_err(|_| context.say_recorded(&books))
         .map_err(|error| about(&options.study.display().to_string(), error))?;
     let elapsed = start.elapsed().as_secs_f64();
-    context.print(&EvalReport::of_model(&study.name, &found, study.spectrum.margin, options.seed, elapsed))?;
+    let report = EvalReport::of_model(&study.name, &found, study.spectrum.margin, options.seed, elapsed);
+    context.print(&report.with_dependence_of(&study.inputs))?;
     Ok(Ending::Done)
 }
 
