@@ -144,6 +144,11 @@ fn as_typed(error: SessionError, surrogate: &str) -> anyhow::Error {
         SessionError::ConfinedInput { input } => anyhow!(
             "--critical {input} --where {input}=…: the critical value is looked for in all of the domain; leave out one"
         ),
+        SessionError::CriticalOfDependent { input, others } => anyhow!(
+            "--critical {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; with --sweep \
+             {input}=FROM..TO:POINTS the others follow",
+            others.join(", ")
+        ),
         SessionError::CriticalSampler => {
             anyhow!("--critical: critical values are found from random samples; leave out --sampler")
         }

@@ -33,7 +33,7 @@ pub enum SessionError {
     /// Critical values of an input that others depend on.
     #[error(
         "critical value of {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; sweep it \
-         instead, and the others follow: --sweep {input}=FROM:TO:POINTS", others.join(", ")
+         instead, and the others follow", others.join(", ")
     )]
     CriticalOfDependent {
         /// The input.

@@ -22,8 +22,8 @@ impl Expansion {
 
 impl Surrogate {
     /// Mean and variance of each component by id, from the coefficients, in the component's own unit: Σ_e w_e m_e and
-    /// Σ_e w_e (v_e + (m_e − m)²) over elements of probability w_e, mean m_e and variance v_e. Where inputs depend on each
-    /// other they are those of independent inputs with the same laws.
+    /// Σ_e w_e (v_e + (m_e − m)²) over elements of probability w_e, mean m_e and variance v_e. Where inputs depend on
+    /// each other they are those of independent inputs with the same laws.
     pub fn moments(&self) -> Vec<(f64, f64)> {
         let weights = || self.mesh.elements().iter().map(|element| element.weight);
         let moments = |component: &crate::components::Component| {

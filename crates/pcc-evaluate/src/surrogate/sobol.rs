@@ -52,8 +52,8 @@ impl Expansion {
 }
 
 impl Surrogate {
-    /// Sobol' indices of every component by id; `None` for those that do not vary. All `None` where inputs depend on each
-    /// other, which leaves coefficients without this meaning, and for meshes that no study gives, of more than ten
+    /// Sobol' indices of every component by id; `None` for those that do not vary. All `None` where inputs depend on
+    /// each other, which leaves coefficients without this meaning, and for meshes that no study gives, of more than ten
     /// thousand elements, a degree above 100, or millions of overlaps.
     pub fn sobol_indices(&self) -> Vec<Option<SobolIndices>> {
         let components = 0..self.component_count();

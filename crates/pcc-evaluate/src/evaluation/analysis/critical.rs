@@ -166,8 +166,8 @@ pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, shares: &Moments) -> O
 ///
 /// # Errors
 ///
-/// [`EvalError`]; [`EvalError::NoSuchInput`] if there are not that many inputs, [`EvalError::Dependent`] if others depend
-/// on it.
+/// [`EvalError`]; [`EvalError::NoSuchInput`] if there are not that many inputs, [`EvalError::Dependent`] if others
+/// depend on it.
 ///
 /// # Examples
 ///

@@ -69,8 +69,8 @@ pub struct Sensitivity {
     pub total: Estimate,
 }
 
-/// An index, or an effect, with the interval that holds it with probability [`SENSITIVITY_LEVEL`]. What lies outside \[0, 1\] by
-/// chance is moved to the nearer end before the interval is laid around it.
+/// An index, or an effect, with the interval that holds it with probability [`SENSITIVITY_LEVEL`]. What lies outside
+/// \[0, 1\] by chance is moved to the nearer end before the interval is laid around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Estimated value.

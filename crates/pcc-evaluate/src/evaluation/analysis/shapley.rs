@@ -3,8 +3,8 @@
 //! For a set S of inputs, Var E\[f | x_S\] is the variance of the output f that is explained once they are known. The
 //! Shapley effect of input i (Owen 2014, <https://doi.org/10.1137/130936233>; Owen and Prieur 2017,
 //! <https://doi.org/10.1137/16M1097717>) is the mean, over all orders in which inputs become known one after the other,
-//! of what it adds to that: Sh_i = E\[Var E\[f | x_{S∪i}\] − Var E\[f | x_S\]\]/Var f, with S the inputs before i. Effects
-//! are not negative and sum to 1. Of independent inputs they lie between first-order and total Sobol' indices.
+//! of what it adds to that: Sh_i = E\[Var E\[f | x_{S∪i}\] − Var E\[f | x_S\]\]/Var f, with S the inputs before i.
+//! Effects are not negative and sum to 1. Of independent inputs they lie between first-order and total Sobol' indices.
 //!
 //! For every sample (Song, Nelson and Staum 2016, <https://doi.org/10.1137/15M1048070>, with one value of each kind)
 //! there is a random order of the inputs, a point x and a point x′, and f_S is the output at x_S with the other
@@ -44,8 +44,9 @@ pub struct ShapleyEffects {
     pub stability: Option<Vec<Estimate>>,
 }
 
-/// Shapley effects on max Re λ and on the indicator of samples that are not unstable, per input in order, from `samples`
-/// samples under `seed`, on the current rayon thread pool. The result is the same bits for any number of threads.
+/// Shapley effects on max Re λ and on the indicator of samples that are not unstable, per input in order, from
+/// `samples` samples under `seed`, on the current rayon thread pool. The result is the same bits for any number of
+/// threads.
 ///
 /// # Errors
 ///
@@ -75,8 +76,8 @@ pub fn shapley_effects(
 ///
 /// # Errors
 ///
-/// As [`shapley_effects`]; [`EvalError::ConfinedDependent`] if an input that others depend on is confined to an interval
-/// ([`Region::has_effects`]).
+/// As [`shapley_effects`]; [`EvalError::ConfinedDependent`] if an input that others depend on is confined to an
+/// interval ([`Region::has_effects`]).
 pub fn shapley_effects_in(
     surrogate: &Surrogate,
     region: &Region,

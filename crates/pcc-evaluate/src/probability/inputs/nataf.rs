@@ -5,7 +5,8 @@
 //!
 //! corr(x_1, x_2) = ∫∫ (x_1(z_1) − m_1)/s_1 (x_2(ρ z_1 + √(1 − ρ²) z_2) − m_2)/s_2 φ(z_1) φ(z_2) dz_1 dz_2,
 //!
-//! which grows with ρ. The trapezoidal rule is exact to rounding here: the integrand is smooth and vanishes at both ends.
+//! which grows with ρ. The trapezoidal rule is exact to rounding here: the integrand is smooth and vanishes at both
+//! ends.
 
 use super::marginal::Marginal;
 use super::normal_quantile::density;

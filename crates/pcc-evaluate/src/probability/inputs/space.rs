@@ -144,9 +144,9 @@ impl InputSpace {
     /// ```
     /// use pcc_evaluate::probability::dependence::GaussianCopula;
     /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Normal};
-    /// let input = |name: &str| Ok::<_, Box<dyn std::error::Error>>(Input::new(name, Marginal::Normal(Normal::new(0.0, 1.0)?)));
+    /// let law = || Normal::new(0.0, 1.0).map(Marginal::Normal);
     /// let copula = GaussianCopula::new(2, [(0, 1, 0.8)])?;
-    /// let space = InputSpace::new(vec![input("k")?, input("c")?])?.with_dependence(copula)?;
+    /// let space = InputSpace::new(vec![Input::new("k", law()?), Input::new("c", law()?)])?.with_dependence(copula)?;
     /// let mut point = [0.9, 0.5];
     /// space.place(&mut point);
     /// assert!((point[1] - 0.8 * point[0]).abs() < 1e-15);
