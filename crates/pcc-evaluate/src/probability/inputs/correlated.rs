@@ -144,7 +144,7 @@ impl Correlated {
             let is_interval = !confined[input].is_none();
             self.steps.push(Step {
                 input,
-                germ: inputs[input].marginal.germ(),
+                germ: inputs[input].marginal.germ().clone(),
                 mean,
                 weights: order[fixed.len()..=k].iter().copied().zip(row[fixed.len()..].iter().copied()).collect(),
                 interval: is_interval.then(|| between(confined[input].scores())).transpose()?,
@@ -238,12 +238,12 @@ impl Between {
 #[cfg(test)]
 mod tests {
     use super::super::marginal::Marginal;
-    use super::super::normal::Normal;
+    use super::super::parameters::Parameters;
     use super::super::uniform::Uniform;
     use super::*;
 
     fn inputs() -> Vec<Input> {
-        let normal = || Marginal::Normal(Normal::new(0.0, 1.0).unwrap());
+        let normal = || Marginal::named("normal", &Parameters::of([("mean", 0.0), ("std", 1.0)])).unwrap();
         let uniform = Marginal::Uniform(Uniform::new(-1.0, 1.0).unwrap());
         [normal(), uniform, normal(), normal()].map(|law| Input::new("x", law)).to_vec()
     }

@@ -8,6 +8,8 @@
 //! which grows with ρ. The trapezoidal rule is exact to rounding here: the integrand is smooth and vanishes at both
 //! ends.
 
+use super::germ::Germ;
+use super::law::Transform;
 use super::marginal::Marginal;
 use super::normal_quantile::density;
 
@@ -26,8 +28,8 @@ const NARROW: f64 = 4.0 * f64::EPSILON;
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::probability::inputs::{LogNormal, Marginal, pearson_of_scores, scores_of_pearson};
-/// let law = Marginal::LogNormal(LogNormal::new(1.0, 0.5)?);
+/// use pcc_evaluate::probability::inputs::{Marginal, Parameters, pearson_of_scores, scores_of_pearson};
+/// let law = Marginal::named("lognormal", &Parameters::of([("mean", 1.0), ("std", 0.5)]))?;
 /// let variance = (1.0f64 + 0.25).ln();
 /// let found = pearson_of_scores(&law, &law, 0.6);
 /// assert!((found - (0.6 * variance).exp_m1() / variance.exp_m1()).abs() < 1e-13);
@@ -85,7 +87,10 @@ pub fn scores_of_pearson(one: &Marginal, other: &Marginal, pearson: f64) -> Resu
 
 /// Whether the correlation is that of the scores: the inputs are affine functions of them.
 fn are_normal(one: &Marginal, other: &Marginal) -> bool {
-    matches!((one, other), (Marginal::Normal(_), Marginal::Normal(_)))
+    let is_normal = |law: &Marginal| {
+        matches!(law.germ(), Germ::Normal) && matches!(law.transform(), Transform::Affine { .. })
+    };
+    is_normal(one) && is_normal(other)
 }
 
 /// Two laws with their means and standard deviations.

@@ -143,8 +143,8 @@ impl InputSpace {
     ///
     /// ```
     /// use pcc_evaluate::probability::dependence::GaussianCopula;
-    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Normal};
-    /// let law = || Normal::new(0.0, 1.0).map(Marginal::Normal);
+    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Parameters};
+    /// let law = || Marginal::named("normal", &Parameters::of([("mean", 0.0), ("std", 1.0)]));
     /// let copula = GaussianCopula::new(2, [(0, 1, 0.8)])?;
     /// let space = InputSpace::new(vec![Input::new("k", law()?), Input::new("c", law()?)])?.with_dependence(copula)?;
     /// let mut point = [0.9, 0.5];

@@ -3,12 +3,12 @@
 use super::*;
 use crate::evaluation::test_surrogates::{XI, expansion, on_threads, surrogate};
 use crate::foundation::Silent;
-use crate::probability::inputs::{Input, InputSpace, Marginal, Normal as NormalLaw, Uniform};
+use crate::probability::inputs::{Input, InputSpace, Marginal, Parameters, Uniform};
 
 /// Inputs that are all normal, or all uniform on [−1, 1].
 fn space(dimension: usize, is_normal: bool, correlations: &[(usize, usize, f64)]) -> InputSpace {
     let law = || match is_normal {
-        true => Marginal::Normal(NormalLaw::new(0.0, 1.0).unwrap()),
+        true => Marginal::named("normal", &Parameters::of([("mean", 0.0), ("std", 1.0)])).unwrap(),
         false => Marginal::Uniform(Uniform::new(-1.0, 1.0).unwrap()),
     };
     let inputs = (0..dimension).map(|j| Input::new(format!("x{j}"), law())).collect();
@@ -19,7 +19,7 @@ fn space(dimension: usize, is_normal: bool, correlations: &[(usize, usize, f64)]
 /// max Re λ = c + β·ξ.
 fn linear(inputs: InputSpace, constant: f64, slopes: &[f64]) -> Surrogate {
     let dimension = slopes.len();
-    let scale = if inputs.inputs()[0].marginal.germ() == Germ::Uniform { XI } else { 1.0 };
+    let scale = if inputs.inputs()[0].marginal.is_divisible() { XI } else { 1.0 };
     let unit = |j: usize| (0..dimension).map(|k| u16::from(k == j)).collect::<Vec<u16>>();
     let alphas: Vec<Vec<u16>> = (0..dimension).map(unit).collect();
     let zero = vec![0; dimension];
