@@ -232,3 +232,26 @@ fn elements_divide_bounded_inputs_alone() {
     }
     built_from(&study("\"log-uniform\", lower = 0.05, upper = 0.2"));
 }
+
+/// Of two oscillators the first has ω² = 100, the other ω² = x: below 100 or above, and at the mean of x before
+/// truncation, where there is nothing of its law, zero.
+#[test]
+fn modes_are_numbered_at_medians() {
+    let study = "format = 1\nname = \"crossing\"\n[model]\nkind = \"matrices\"\nM = [[1, 0], [0, 1]]\nC = [[0.2, 0], [0, \
+                 0.5]]\nK = [[100, 0], [0, \"x\"]]\n[inputs]\nx = { distribution = \"normal\", mean = 0.0, std = 100.0, \
+                 lower = 60.0, upper = 400.0 }\n[spectrum]\ntarget = \"invariants\"\n";
+    let folder = built_from(study);
+    let report = json(folder.path(), &["eval", "built.pcc", "-n", "1000"]);
+    let modes = report["modes"].as_array().unwrap();
+    // The median of x is above 100.
+    let median = {
+        let study = Study::from_toml(study).unwrap();
+        study.inputs.physical(&study.inputs.middle())[0]
+    };
+    assert!((105.0..115.0).contains(&median), "{median}");
+    let growth = |number: u64| {
+        let mode = modes.iter().find(|mode| mode["mode"] == number).unwrap();
+        mode["growth_rate"]["mean"].as_f64().unwrap()
+    };
+    assert!((growth(1) + 0.1).abs() < 1e-9 && (growth(2) + 0.25).abs() < 1e-9, "{modes:?}");
+}

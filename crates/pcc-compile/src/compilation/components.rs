@@ -167,14 +167,15 @@ impl<'a> ComponentFit<'a> {
         Ok(Fitted { stop: StopReason::Stalled, ..best })
     }
 
-    /// The value of a fit in the middle of the inputs, ξ = 0.
+    /// The value of a fit in the middle of the inputs, where all have their medians.
     pub fn value_at_center(&self, fitted: &Fitted) -> f64 {
         let univariate: Vec<Vec<f64>> = self
             .recurrences
             .iter()
-            .map(|recurrence| {
+            .zip(self.study.inputs.middle())
+            .map(|(recurrence, middle)| {
                 let mut values = vec![0.0; usize::from(self.study.fit.method.max_degree()) + 1];
-                recurrence.evaluate(0.0, &mut values);
+                recurrence.evaluate(middle, &mut values);
                 values
             })
             .collect();

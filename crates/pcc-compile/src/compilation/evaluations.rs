@@ -151,7 +151,9 @@ impl<'a> Evaluations<'a> {
             return Err(RunError::EigenvalueCount { first_point, first_count, point, count }.into());
         }
         let points: Vec<&[f64]> = samples.points().collect();
-        let from_center = |run: &usize| points[*run].iter().map(|xi| xi * xi).sum::<f64>();
+        let middle = self.study.inputs.middle();
+        let from_center =
+            |run: &usize| points[*run].iter().zip(&middle).map(|(xi, center)| (xi - center).powi(2)).sum::<f64>();
         let nearest = || (0..points.len()).reduce(|a, b| if from_center(&b) < from_center(&a) { b } else { a });
         let root = self.root.or_else(nearest).unwrap_or(0);
         let spectra: Vec<&Spectrum> = self.runs.iter().map(|run| &run.spectrum).collect();

@@ -1,4 +1,5 @@
-//! Numbers of modes and real eigenvalues, given once: by what the surrogate says in the middle of the inputs, ξ = 0.
+//! Numbers of modes and real eigenvalues, given once: by what the surrogate says in the middle of the inputs, where
+//! all have their medians.
 //!
 //! From 1, the modes that oscillate there by natural frequency |λ| (of equal ones by Im λ, then Re λ), then the modes
 //! that are overdamped there, by √|λλ′| of their two eigenvalues. Eigenvalues that are real and belong to no mode have

@@ -84,8 +84,8 @@ impl<'a> PointReference<'a> {
     /// Runs the middle of the inputs and gives numbers. Rigid-body motion is what it has in common with the first runs:
     /// a slow eigenvalue may pass zero just there.
     fn begin(&mut self, first: &mut [Run], observer: &dyn Observer) -> Result<(), ReferenceError> {
-        let inputs = self.study.inputs.inputs();
-        let middle: Vec<f64> = inputs.iter().map(|input| input.marginal.at_centred_probability(0.0)).collect();
+        let inputs = &self.study.inputs;
+        let middle = inputs.physical(&inputs.middle());
         let mut center = self.runner.run(std::slice::from_ref(&middle), observer)?;
         let common = agree_on_rigid_body_motion(first, usize::MAX);
         agree_on_rigid_body_motion(&mut center, common);

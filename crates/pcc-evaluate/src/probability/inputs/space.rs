@@ -235,6 +235,21 @@ impl InputSpace {
         self.inputs.iter().zip(physical).map(|(input, &x)| input.marginal.standardized(x)).collect()
     }
 
+    /// Standardized coordinates of the point where every input has its median: zeros for uniform and normal laws.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Normal, TruncatedNormal};
+    /// let half = TruncatedNormal::new(Normal::new(0.0, 1.0)?, Some(0.0), None)?;
+    /// let space = InputSpace::new(vec![Input::new("x", Marginal::TruncatedNormal(half))])?;
+    /// assert!((space.middle()[0] - 0.674_489_750_196_081_7).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn middle(&self) -> Vec<f64> {
+        self.0.iter().map(|input| input.marginal.germ().at(0.0)).collect()
+    }
+
     /// Whether every coordinate lies in its support.
     ///
     /// # Errors
