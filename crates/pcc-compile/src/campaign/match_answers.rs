@@ -6,10 +6,11 @@ use crate::mechanics::model::command::results_table::ResultRow;
 use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError, Target};
 use crate::study::Study;
 use nalgebra::Complex;
+use pcc_evaluate::probability::inputs::{Germ, Marginal};
 use std::collections::HashMap;
 use thiserror::Error;
 
-/// Inputs of a numbered run may differ from the design's by this share of their interval: tables are written with fewer
+/// Inputs of a numbered run may differ from the design's by this share of their width: tables are written with fewer
 /// digits.
 const INPUT_TOLERANCE: f64 = 1e-4;
 
@@ -101,7 +102,7 @@ pub struct MatchedAnswers {
 /// Finds the run of each row among those `asked` for, in the order of the design, and what is new; `known` are the
 /// outcomes of these runs as far as there are any.
 ///
-/// A row belongs to the run with its number, whose inputs it must have to four digits of its interval, or else to that
+/// A row belongs to the run with its number, whose inputs it must have to four digits of their widths, or else to that
 /// with the bits of its inputs. Answers to a run that has failed are new; failures of a run that was answered are not.
 /// With `replaces`, an answer that contradicts an earlier one takes its place.
 ///
@@ -201,9 +202,20 @@ fn usable(study: &Study, eigenvalues: &[Complex<f64>]) -> Result<(), SpectrumErr
 fn is_close(study: &Study, found: &[f64], expected: &[f64]) -> bool {
     let inputs = study.inputs.inputs();
     inputs.iter().zip(found).zip(expected).all(|((input, found), expected)| {
-        let width = input.marginal.physical(1.0) - input.marginal.physical(-1.0);
-        (found - expected).abs() <= INPUT_TOLERANCE * width
+        (found - expected).abs() <= INPUT_TOLERANCE * width(&input.marginal, *expected)
     })
+}
+
+/// The scale of an input's values at `value`: the whole interval of a uniform standardized variable, else twice that of
+/// the middle half, or twice the distance from the median in the tails, whose values have digits of their own.
+fn width(law: &Marginal, value: f64) -> f64 {
+    match law.germ() {
+        Germ::Uniform => law.physical(1.0) - law.physical(-1.0),
+        _ => {
+            let [lower, median, upper] = [-0.5, 0.0, 0.5].map(|centred| law.at_centred_probability(centred));
+            2.0 * (upper - lower).max((value - median).abs())
+        }
+    }
 }
 
 /// The largest difference between eigenvalues, whatever their order, and the largest |λ|.
@@ -217,4 +229,28 @@ fn difference(a: &[Complex<f64>], b: &[Complex<f64>]) -> (f64, f64) {
         largest = (left.swap_remove(nearest) - lambda).norm().max(largest);
     }
     (largest, scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcc_evaluate::probability::inputs::{LogNormal, Normal, TruncatedNormal, Uniform};
+
+    #[test]
+    fn widths_are_those_of_what_is_probable() {
+        let uniform = Marginal::Uniform(Uniform::new(15.2e6, 16.8e6).unwrap());
+        assert_eq!(width(&uniform, 0.0), uniform.physical(1.0) - uniform.physical(-1.0));
+        // Twice the middle half of a normal law is 4 · 0.67449 standard deviations.
+        let normal = Normal::new(10.0, 2.0).unwrap();
+        let known = 4.0 * 0.674_489_750_196_081_7 * 2.0;
+        assert!((width(&Marginal::Normal(normal), 11.0) - known).abs() < 1e-12);
+        assert_eq!(width(&Marginal::Normal(normal), 20.0), 20.0);
+        // Where ξ is at most 1 there is nothing of this one.
+        let beyond = TruncatedNormal::new(Normal::new(0.0, 1.0).unwrap(), Some(2.0), Some(3.0)).unwrap();
+        let width_beyond = width(&Marginal::TruncatedNormal(beyond), 2.1);
+        assert!((0.5..1.0).contains(&width_beyond), "{width_beyond}");
+        // Four digits are enough for large values of a law with a long tail, too.
+        let long = Marginal::LogNormal(LogNormal::new(1.0, 3.0).unwrap());
+        assert!((1234.4 - 1234.0) < INPUT_TOLERANCE * width(&long, 1234.4) * 4.0);
+    }
 }
