@@ -173,9 +173,16 @@ pub struct CriticalReport {
     pub head: String,
     /// Samples of the other inputs.
     pub samples: u64,
-    /// Share that stays stable over the whole domain.
+    /// Where values are looked for: the lower bound, of an input whose law is not uniform the quantile at 1/8192.
+    pub from: f64,
+    /// The upper bound, or the quantile at 8191/8192.
+    pub to: f64,
+    /// What of the law lies below `from`, and above `to`.
+    #[serde(skip)]
+    pub tail: f64,
+    /// Share that stays stable from `from` to `to`.
     pub never: f64,
-    /// Share that is unstable at the lower bound already.
+    /// Share that is unstable at `from` already.
     pub unstable_from_start: f64,
     /// Mean critical value of those that lose stability; null if none does.
     pub mean: Option<f64>,
@@ -193,7 +200,7 @@ pub struct CriticalReport {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CrossingReport {
-    /// Number of the change, from 1, from the lower bound of the input upwards.
+    /// Number of the change, from 1, upwards from the smallest value that is looked at.
     pub order: u32,
     /// `lost` or `regained`: what happens to stability as the input grows.
     pub stability: &'static str,
@@ -279,7 +286,15 @@ impl CriticalReport {
     pub fn new(input: &Input, found: &CriticalValues) -> Self {
         let share = |part: u64| part as f64 / found.samples as f64;
         let quantile = |level| CriticalQuantile { level, value: found.quantile(level) };
+        let reach = input.marginal.germ().reach();
+        let [from, to] = match reach < 1.0 {
+            true => [-reach, reach].map(|centred| input.marginal.at_centred_probability(centred)),
+            false => input.marginal.support(),
+        };
         Self {
+            from,
+            to,
+            tail: 0.5 * (1.0 - reach),
             input: input.name.clone(),
             head: input.name_with_unit(),
             samples: found.samples,
@@ -301,10 +316,19 @@ impl fmt::Display for CriticalReport {
         let title = format!("critical {}: the smallest value at which the system is unstable", self.head);
         writeln!(f, "\n{}", wrapped(&title, columns, 0))?;
         let mut facts = Facts::default();
+        if self.tail > 0.0 {
+            let [from, to] = [self.from, self.to].map(|end| significant(end, 4));
+            let words = format!("its quantiles of {} and {}", share(self.tail), share(1.0 - self.tail));
+            facts.add("looked for", format!("from {from} to {to}"), words);
+        }
         facts.add("stable throughout", share(self.never), "");
         facts.add("unstable from start", share(self.unstable_from_start), "");
         let (mean, minimum, maximum) = (value(self.mean), value(self.minimum), value(self.maximum));
-        let start = if self.unstable_from_start > 0.0 { "; the lower bound for those unstable from start" } else { "" };
+        let start = match (self.unstable_from_start > 0.0, self.tail > 0.0) {
+            (false, _) => String::new(),
+            (true, false) => "; the lower bound for those unstable from start".to_owned(),
+            (true, true) => format!("; {} for those unstable from start", significant(self.from, 4)),
+        };
         match self.mean {
             Some(_) => facts.add("critical values", format!("mean {mean}, {minimum} to {maximum}{start}"), ""),
             None => facts.add("critical values", "none", ""),

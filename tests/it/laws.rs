@@ -21,6 +21,9 @@ fn oscillator(inputs: &[(&str, &str)], threshold: f64, rest: &str) -> String {
     )
 }
 
+pub(crate) const UNIFORM: &str = "\"uniform\", lower = 0.0, upper = 0.2";
+pub(crate) const NORMAL: &str = "\"normal\", mean = 1.0, std = 0.2";
+
 fn folder_with(study: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("study.toml"), study).unwrap();
@@ -232,6 +235,29 @@ fn elements_divide_bounded_inputs_alone() {
     }
     built_from(&study("\"log-uniform\", lower = 0.05, upper = 0.2"));
 }
+
+#[test]
+fn critical_values_say_where_they_were_looked_for() {
+    let folder = built_from(&oscillator(&[("u", UNIFORM), ("x", NORMAL)], 1.1, ""));
+    let critical = ["eval", "built.pcc", "-n", "1000", "--critical", "x", "--where", "u=0.1"];
+    let report = json(folder.path(), &critical);
+    // Quantiles of a normal law at 1/8192 and 8191/8192, by SciPy: ∓3.668 329 standard deviations.
+    let ends = ["from", "to"].map(|end| number(&report, &format!("/critical/{end}")));
+    assert!(
+        (ends[0] - (1.0 - 0.2 * QUANTILE)).abs() < 1e-9 && (ends[1] - (1.0 + 0.2 * QUANTILE)).abs() < 1e-9,
+        "{ends:?}"
+    );
+    let shown = in_one_line(&output(folder.path(), &critical));
+    assert!(shown.contains("looked for from 0.2663 to 1.734 its quantiles of 0.012 % and 99.988 %"), "{shown}");
+    let inputs = [("u", UNIFORM), ("x", "\"uniform\", lower = 0.5, upper = 1.5")];
+    let folder = built_from(&oscillator(&inputs, 1.1, ""));
+    let report = json(folder.path(), &critical);
+    assert_eq!((number(&report, "/critical/from"), number(&report, "/critical/to")), (0.5, 1.5));
+    assert!(!output(folder.path(), &critical).contains("looked for"));
+}
+
+/// −Φ⁻¹(1/8192), by SciPy.
+const QUANTILE: f64 = 3.6683292851213234;
 
 /// Of two oscillators the first has ω² = 100, the other ω² = x: below 100 or above, and at the mean of x before
 /// truncation, where there is nothing of its law, zero.

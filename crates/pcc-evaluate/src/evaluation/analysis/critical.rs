@@ -4,8 +4,10 @@
 //! which it is unstable, max Re λ > 0. Its distribution says where a limit for this input has to lie so that, say, 99 %
 //! of all systems stay stable below it.
 //!
+//! The domain is the interval of an input with bounds; of others what lies between two quantiles far out.
+//!
 //! 1. max Re λ at the 65 ends of 64 equal cells of the input's domain, from below, until one is unstable. If it is the
-//!    first, the critical value is the lower bound; if there is none, there is no critical value.
+//!    first, the critical value is the smallest that is looked at; if there is none, there is no critical value.
 //! 2. The crossing between the last stable and the first unstable end, by interpolation with the safety of
 //!    bisection, until a stable and an unstable value are less than 10⁻⁹ of the domain's width apart: the critical
 //!    value is the unstable one.
@@ -50,12 +52,12 @@ pub struct CriticalValues {
     pub samples: u64,
     /// Samples that are stable at every point of the grid: they have no critical value.
     pub never: u64,
-    /// Samples that are unstable at the lower bound already: it is their critical value.
+    /// Samples that are unstable at the smallest value already: it is their critical value.
     pub unstable_from_start: u64,
     domain: Marginal,
-    /// Critical values above the lower bound, per bin.
+    /// Critical values above the smallest, per bin.
     counts: Vec<u64>,
-    /// All critical values, as shares of the domain's width above the lower bound.
+    /// All critical values, as shares of what is looked at, from the smallest value upwards.
     shares: Moments,
     /// Every change of stability along the input.
     crossings: Crossings,
@@ -228,7 +230,7 @@ pub fn critical_values_in(
 struct Part {
     never: u64,
     unstable_from_start: u64,
-    /// Critical values above the lower bound, as shares of the domain's width.
+    /// Critical values above the smallest value that is looked at, as shares of the domain's width.
     crossings: Vec<f64>,
     /// Every change of stability, as a share of the domain's width.
     changes: Vec<(CrossingKey, f64)>,

@@ -15,7 +15,7 @@ const MOST_CROSSINGS: u32 = 16;
 /// What tells crossings apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct CrossingKey {
-    /// From 1, from the lower bound of the input upwards.
+    /// From 1, upwards from the smallest value that is looked at.
     pub order: u32,
     /// Whether the system is unstable above it.
     pub loses: bool,
@@ -41,7 +41,7 @@ struct Values {
 /// Crossings of the same order, kind and mode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crossing {
-    /// From 1, from the lower bound of the input upwards.
+    /// From 1, upwards from the smallest value that is looked at.
     pub order: u32,
     /// Whether stability is lost there, or regained.
     pub loses: bool,
