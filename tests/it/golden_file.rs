@@ -86,6 +86,12 @@ fn meta(b: &mut B) -> Value {
 fn inputs(b: &mut B) -> Value {
     let interval: [Field; 2] = [("lower", &B::float), ("upper", &B::float)];
     let affine: [Field; 2] = [("center", &B::float), ("half_width", &B::float)];
+    let pieces: [Field; 4] = [
+        ("origin", &B::float),
+        ("scale", &B::float),
+        ("breaks", &B::floats),
+        ("coefficients", &|b| b.list(B::floats)),
+    ];
     let parameter = |b: &mut B| b.fields(&[("name", &B::text), ("value", &B::float)]);
     let law: [Field; 2] = [("name", &B::text), ("parameters", &|b| b.list(parameter))];
     let correlation = |b: &mut B| b.fields(&[("first", &u32_number), ("second", &u32_number), ("value", &B::float)]);
@@ -94,8 +100,8 @@ fn inputs(b: &mut B) -> Value {
         b.fields(&[
             ("name", &B::text),
             ("distribution", &|b| b.tagged(&[("uniform", &interval), ("law", &law)])),
-            ("transform", &|b| b.tagged(&[("affine", &affine), ("of_law", &[])])),
-            ("family", &|b| b.kind(&["legendre", "hermite", "truncated_normal"])),
+            ("transform", &|b| b.tagged(&[("affine", &affine), ("exponential", &affine), ("pieces", &pieces)])),
+            ("family", &|b| b.kind(&["legendre", "hermite", "laguerre", "jacobi", "own"])),
             ("recurrence", &|b| b.fields(&[("diagonal", &B::floats), ("off_diagonal", &B::floats)])),
             ("bounds", &|b| b.option(B::bounds)),
         ])
@@ -229,6 +235,11 @@ fn descriptions(b: &mut B) -> Value {
     b.fields(&[("inputs", &|b| b.list(input))])
 }
 
+fn domain(b: &mut B) -> Value {
+    let interval = |b: &mut B| b.fields(&[("lower", &B::float), ("upper", &B::float)]);
+    b.fields(&[("inputs", &|b| b.list(|b| b.option(interval)))])
+}
+
 /// The document that a file holds, read by hand.
 fn document(file: &[u8]) -> Value {
     let mut b = Bytes { bytes: file.to_vec(), at: 0 };
@@ -236,7 +247,7 @@ fn document(file: &[u8]) -> Value {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [Field; 11] = [
+    let sections: [Field; 12] = [
         ("meta", &meta),
         ("inputs", &inputs),
         ("outputs", &outputs),
@@ -248,8 +259,9 @@ fn document(file: &[u8]) -> Value {
         ("verdict", &verdict),
         ("coverage", &coverage),
         ("descriptions", &descriptions),
+        ("domain", &domain),
     ];
-    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12].into_iter().zip(sections) {
+    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 13].into_iter().zip(sections) {
         let is_next = b.at < file.len() - 4 && u16::from_le_bytes([file[b.at], file[b.at + 1]]) == kind;
         if kind > 9 && !is_next {
             continue;
@@ -333,6 +345,17 @@ fn it_reads_laws_and_dependence() {
     assert_eq!(found["inputs"]["inputs"][0]["distribution"]["law"]["name"], "normal");
     let expected = json!({ "gaussian_copula": { "correlations": [{ "first": 0, "second": 1, "value": 0.6 }] } });
     assert_eq!(found["inputs"]["dependence"], expected);
+}
+
+#[test]
+fn it_reads_laws_and_where_the_model_was_run() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::laws::built();
+    let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(&surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    let sides = found["domain"]["inputs"].as_array().unwrap();
+    assert!(sides[0].is_null() && sides[1]["lower"].as_f64().unwrap() < -1.0, "{sides:?}");
 }
 
 #[test]

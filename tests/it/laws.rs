@@ -5,6 +5,7 @@ use crate::support::{build, in_one_line, invariants_study, text};
 use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
+use pcc_evaluate::surrogate::Surrogate;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -23,6 +24,11 @@ fn oscillator(inputs: &[(&str, &str)], threshold: f64, rest: &str) -> String {
 
 pub(crate) const UNIFORM: &str = "\"uniform\", lower = 0.0, upper = 0.2";
 pub(crate) const NORMAL: &str = "\"normal\", mean = 1.0, std = 0.2";
+
+/// The surrogate of an oscillator with a uniform and a normal input.
+pub(crate) fn built() -> Surrogate {
+    build(&Study::from_toml(&oscillator(&[("u", UNIFORM), ("x", NORMAL)], 1.1, "")).unwrap())
+}
 
 fn folder_with(study: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();

@@ -10,7 +10,7 @@
 use super::evaluations::groups;
 use super::{BuildError, Built, decision, record};
 use crate::campaign::{Campaign, Run, RunError, Runner};
-use crate::fitting::design::TensorGauss;
+use crate::fitting::design::{Samples, TensorGauss};
 use crate::fitting::fit::gpc::{Projection, project, total_degree};
 use crate::fitting::fit::multi_element::{Division, EQUAL, MultiElement, division};
 use crate::fitting::fit::{FitMethod, Fitted};
@@ -21,8 +21,7 @@ use crate::study::Study;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::polynomials::{IndexSet, Mesh, MultiIndex, Recurrence};
-use pcc_evaluate::surrogate::Counts;
-use pcc_evaluate::surrogate::StopReason;
+use pcc_evaluate::surrogate::{Counts, StopReason, TrainedDomain};
 
 /// Nodes whose coordinates are held in memory together.
 const BLOCK: usize = 4096;
@@ -200,6 +199,13 @@ impl<'a> Elements<'a> {
         (!inputs.is_empty()).then_some((element, inputs))
     }
 
+    /// The box of the nodes. Variables without bounds have one element, and grids their outermost nodes at both ends.
+    fn trained_domain(&self) -> Option<TrainedDomain> {
+        let last = self.grid.len() - 1;
+        let ends = [0..1, last..last + 1].map(|numbers| self.grid.nodes(numbers));
+        TrainedDomain::of(&self.study.inputs, ends.iter().flat_map(Samples::points))
+    }
+
     fn into_surrogate(self) -> Result<Built, BuildError> {
         let node_weights: Vec<f64> = self.grid.weights(0..self.grid.len()).collect();
         let weights: Vec<f64> = self
@@ -230,8 +236,10 @@ impl<'a> Elements<'a> {
         let final_mesh = weights.len() as u64;
         let counts =
             Counts { values: final_mesh, gradients: 0, failed: 0, final_mesh, direct_computations: self.spent };
+        let trained_domain = self.trained_domain();
         let mut surrogate =
             record::of_elements(self.study, self.mesh, self.outputs, &fitted, counts, self.levels.clone());
+        surrogate.trained_domain = trained_domain;
         let runs: Vec<Run> = self.runs.into_iter().flatten().collect();
         let judgement = decision::judge_by_nodes(&surrogate, &values, &runs, &weights);
         record::judged(&mut surrogate, &judgement, &runs);

@@ -13,8 +13,8 @@ use crate::study::Study;
 use pcc_evaluate::components::{Component, Output};
 use pcc_evaluate::polynomials::Mesh;
 use pcc_evaluate::surrogate::{
-    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, Surrogate, Training,
-    VerdictBasis,
+    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, Surrogate, TrainedDomain,
+    Training, VerdictBasis,
 };
 
 fn setting(key: &str, value: SettingValue) -> Setting {
@@ -71,6 +71,7 @@ pub(super) fn surrogate(
     }
     let whole = Mesh::whole(study.inputs.dimension());
     let mut surrogate = new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training);
+    surrogate.trained_domain = TrainedDomain::of(&study.inputs, level.samples.points());
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());
     surrogate.verdict.is_self_adjoint = evaluations.is_self_adjoint();
@@ -148,6 +149,7 @@ fn new<'a>(
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         coverage: None,
+        trained_domain: None,
         certificates: Vec::new(),
         verdict: VerdictBasis { margin: study.spectrum.margin, ..VerdictBasis::default() },
     }

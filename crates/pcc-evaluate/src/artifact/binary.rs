@@ -35,7 +35,7 @@ impl Section {
 }
 
 /// Names of the sections of kind 1, 2, ….
-pub(super) const SECTION_NAMES: [&str; 12] = [
+pub(super) const SECTION_NAMES: [&str; 13] = [
     "meta",
     "inputs",
     "outputs",
@@ -48,6 +48,7 @@ pub(super) const SECTION_NAMES: [&str; 12] = [
     "verdict",
     "coverage",
     "descriptions",
+    "domain",
 ];
 
 /// Kind of the section of outputs, which has two versions.
@@ -65,9 +66,12 @@ pub(super) const COVERAGE: u16 = 11;
 /// Kind of the optional section of units and labels, which change no number.
 pub(super) const DESCRIPTIONS: u16 = 12;
 
+/// Kind of the optional section of the box that the model runs spanned.
+pub(super) const DOMAIN: u16 = 13;
+
 /// Whether readers need not understand a section.
 pub(super) fn is_optional(kind: u16) -> bool {
-    [CERTIFICATES, COVERAGE, DESCRIPTIONS].contains(&kind)
+    [CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN].contains(&kind)
 }
 
 /// Sections 2 to 8 and 10, those that determine what a surrogate computes.
@@ -105,6 +109,9 @@ pub(super) fn sections(document: &Document) -> Result<Vec<Section>, WriteError> 
     }
     if let Some(descriptions) = &document.descriptions {
         sections.push(section(DESCRIPTIONS, descriptions)?);
+    }
+    if let Some(domain) = &document.domain {
+        sections.push(section(DOMAIN, domain)?);
     }
     sections.sort_by_key(|section| section.kind);
     Ok(sections)

@@ -1,7 +1,7 @@
 //! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
 
 use super::binary::{
-    CERTIFICATES, COVERAGE, DESCRIPTIONS, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections,
+    CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections,
 };
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
@@ -93,6 +93,7 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         verdict: sections.optional(VERDICT)?,
         coverage: sections.optional(COVERAGE)?,
         descriptions: sections.optional(DESCRIPTIONS)?,
+        domain: sections.optional(DOMAIN)?,
     };
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }

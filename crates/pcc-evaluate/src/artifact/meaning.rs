@@ -6,7 +6,7 @@ use super::v2;
 
 /// The first section that holds a NaN or an infinity.
 pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
-    let sections: [(&str, Vec<f64>); 10] = [
+    let sections: [(&str, Vec<f64>); 11] = [
         ("inputs", document.inputs.inputs.iter().flat_map(input).chain(dependence(&document.inputs)).collect()),
         ("outputs", document.outputs.components().flat_map(|component| [component.center, component.scale]).collect()),
         ("elements", elements(&document.elements)),
@@ -26,6 +26,7 @@ pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
         ),
         ("verdict", document.verdict.iter().flat_map(verdict).collect()),
         ("coverage", document.coverage.iter().flat_map(coverage).collect()),
+        ("domain", document.domain.iter().flat_map(domain).collect()),
     ];
     sections.into_iter().find(|(_, numbers)| numbers.iter().any(|number| !number.is_finite())).map(|(name, _)| name)
 }
@@ -109,6 +110,10 @@ fn verdict(verdict: &v2::Verdict) -> Vec<f64> {
 
 fn coverage(coverage: &v2::Coverage) -> Vec<f64> {
     coverage.answered.iter().chain(&coverage.unanswered).flatten().copied().collect()
+}
+
+fn domain(domain: &v2::Domain) -> Vec<f64> {
+    domain.inputs.iter().flatten().flat_map(|side| [side.lower, side.upper]).collect()
 }
 
 /// Fails with `message` unless `holds`.

@@ -7,6 +7,7 @@
 mod binary;
 mod container;
 mod descriptions;
+mod domain;
 mod error;
 mod from_v1;
 mod inputs;

@@ -9,6 +9,7 @@ use std::sync::LazyLock;
 
 mod dependence;
 mod descriptions;
+mod domain;
 
 /// Bytes before the first section, and those of a section's header.
 const HEADER: usize = 24;

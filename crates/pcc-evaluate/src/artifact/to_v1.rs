@@ -3,7 +3,7 @@
 use super::error::WriteError;
 use super::meaning::not_finite;
 use super::version::{MAJOR, minor};
-use super::{binary, descriptions, inputs, v1, v2};
+use super::{binary, descriptions, domain, inputs, v1, v2};
 use crate::components::{Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh};
 use crate::surrogate::{
@@ -41,6 +41,7 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
             unanswered: coverage.unanswered.clone(),
         }),
         descriptions: descriptions::section(&surrogate.inputs),
+        domain: domain::section(surrogate),
     };
     if let Some(section) = not_finite(&document) {
         return Err(WriteError::NotFinite { section });

@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::v2::{AnyCertificates, AnyOutputs, Coverage, Descriptions, Verdict};
+use super::v2::{AnyCertificates, AnyOutputs, Coverage, Descriptions, Domain, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,6 +45,9 @@ pub struct Document {
     /// Section 12, if an input has a unit or a label. Since format 1.3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub descriptions: Option<Descriptions>,
+    /// Section 13, if some standardized variable is not uniform. Since format 1.3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub domain: Option<Domain>,
 }
 
 /// Version of the format.

@@ -1,6 +1,7 @@
 //! Section 3 in version 2: outputs with eigenvalues that are real, or can become so. Section 9 in version 2:
 //! certificates of systems that can be marginal. Section 10: what else there is to know of the verdict on stability.
-//! Section 11: where the model did not answer. Section 12: units and labels of the inputs.
+//! Section 11: where the model did not answer. Section 12: units and labels of the inputs. Section 13: the box that
+//! the model runs spanned.
 //!
 //! Files are written with version 1 of a section wherever that can say it. The rules of [`super::v1`] hold: a
 //! published body never changes.
@@ -105,6 +106,26 @@ pub struct Description {
     pub unit: Option<String>,
     /// What it is: at most 80 characters.
     pub label: Option<String>,
+}
+
+/// Section 13, optional and outside the content id: the box that the model runs spanned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// One per input, in the order of section 2; null where the standardized variable is uniform.
+    pub inputs: Vec<Option<TrainedInterval>>,
+}
+
+/// The smallest and the largest value of a standardized variable at a model run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct TrainedInterval {
+    /// The smallest.
+    pub lower: f64,
+    /// The largest.
+    pub upper: f64,
 }
 
 /// Certificates, in the version that says them.

@@ -6,6 +6,7 @@ mod coverage;
 mod evaluate;
 mod records;
 mod sobol;
+mod trained_domain;
 
 pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
 pub use analysis::FitQuality;
@@ -15,6 +16,7 @@ pub use records::{
     SettingValue, StopReason, Training, VerdictBasis,
 };
 pub use sobol::SobolIndices;
+pub use trained_domain::TrainedDomain;
 
 use crate::components::{Component, Label, Output, OutputKind};
 use crate::polynomials::Mesh;
@@ -49,6 +51,8 @@ pub struct Surrogate {
     pub verdict: VerdictBasis,
     /// Where the model did not answer, if it did not everywhere.
     pub coverage: Option<Coverage>,
+    /// The box that the model runs spanned; `None` if they fill the laws of all inputs, and if it is not known.
+    pub trained_domain: Option<TrainedDomain>,
 }
 
 impl Surrogate {
