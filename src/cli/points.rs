@@ -36,6 +36,12 @@ pub(super) enum PointsError {
     RowLength { row: u64, found: usize, expected: usize },
     #[error("row {row}: the surrogate has no finite value there; move the point closer to the domain")]
     NotFinite { row: u64 },
+    #[error(
+        "row {row}: {name} = {value:?} lies where its {law} law ends, infinitely far from all model runs in what the \
+         surrogate is a polynomial of, so it has no value there; move the point to where the model was run (pcc inspect \
+         says where)"
+    )]
+    AtEnd { row: u64, name: String, value: f64, law: &'static str },
     #[error("there are no points below the header")]
     Empty,
     #[error("{path}: {cause}")]
@@ -57,19 +63,26 @@ pub(super) struct PointsReport {
     /// Points whose nearest run of the design failed; absent if none did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unanswered_points: Option<u64>,
+    /// Points beyond all model runs in at least one input; absent if runs fill the laws of all inputs, and if the file
+    /// does not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extrapolated_points: Option<u64>,
     pub file: String,
 }
 
 impl fmt::Display for PointsReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} points, {} of them stable, written to {}", self.points, self.stable_points, self.file)?;
-        match self.unanswered_points.filter(|&count| count > 0) {
-            Some(count) => writeln!(
-                f,
-                "\nwarning: the model did not answer near {count} of them; there the surrogate extrapolates"
-            ),
-            None => Ok(()),
+        if let Some(count) = self.unanswered_points.filter(|&count| count > 0) {
+            writeln!(f, "\nwarning: the model did not answer near {count} of them; there the surrogate extrapolates")?;
         }
+        if let Some(count) = self.extrapolated_points.filter(|&count| count > 0) {
+            writeln!(
+                f,
+                "\nwarning: {count} of them lie beyond all model runs in some input; there the surrogate extrapolates"
+            )?;
+        }
+        Ok(())
     }
 }
 
@@ -203,8 +216,22 @@ impl<'a> PointsFile<'a> {
         }
         let found = evaluate(&points)?;
         match found.results.iter().position(|(_, top)| !top.max_re.is_finite()) {
-            Some(at) => Err(in_file(PointsError::NotFinite { row: rows_before + 1 + at as u64 }).into()),
+            Some(at) => Err(in_file(self.not_finite(rows_before + 1 + at as u64, &points[at])).into()),
             None => Ok(Some((points, found))),
+        }
+    }
+}
+
+impl PointsFile<'_> {
+    /// Why there is no finite value at a point.
+    fn not_finite(&self, row: u64, point: &[f64]) -> PointsError {
+        let mut coordinates = self.inputs.inputs().iter().zip(point);
+        let at_end = coordinates.find(|(input, value)| !input.marginal.standardized(**value).is_finite());
+        match at_end {
+            Some((input, &value)) => {
+                PointsError::AtEnd { row, name: input.name.clone(), value, law: input.marginal.name() }
+            }
+            None => PointsError::NotFinite { row },
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::confidence::Confidence;
 use super::coverage::Bounds;
 use super::dependence::DependenceReport;
+use super::extrapolation;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
@@ -81,6 +82,13 @@ pub struct EvalReport {
     /// Between what the shares lie, whatever it would have answered there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
+    /// Share of samples beyond all model runs in at least one input; absent if runs fill the laws of all inputs, if the
+    /// file does not say, and for a model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extrapolated_proportion: Option<f64>,
+    /// Between what the shares lie, whatever the model would say there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extrapolated_bounds: Option<Bounds>,
     /// Spectral abscissa max Re λ, in 1/s.
     pub max_re: Statistics,
     /// What engineers read, per mode.
@@ -306,12 +314,16 @@ impl EvalReport {
         report.critical = found.critical.as_ref().map(|(input, values)| CriticalReport::new(&inputs[*input], values));
         report.unanswered_proportion = found.unanswered.map(|found| found.proportion());
         report.bounds = found.unanswered.as_ref().map(Bounds::of);
+        let extrapolated = extrapolation::of(&cell.total);
+        report.extrapolated_proportion = extrapolated.map(|(proportion, _)| proportion);
+        report.extrapolated_bounds = extrapolated.map(|(_, bounds)| bounds);
         report.events = events(question, cell);
         (report.histograms, report.quantiles) = histograms(question, &answer.histograms);
         report.warnings = FitReport::warnings_of(surrogate);
         if is_whole && let Some(contradiction) = Confidence::contradiction(surrogate, stable.value()) {
             report.warnings.insert(0, contradiction);
         }
+        report.warnings.extend(extrapolation::warning(surrogate, extrapolated));
         report.warnings.extend(unbalanced(question));
         let quantile = |quantile: &Quantile| QuantileReport { level: quantile.level, value: quantile.value };
         report.max_re_residuals = surrogate.decision.max_re_residuals.iter().map(quantile).collect();
@@ -390,6 +402,8 @@ impl EvalReport {
             confidence: Confidence::of_model(stable),
             unanswered_proportion: None,
             bounds: None,
+            extrapolated_proportion: None,
+            extrapolated_bounds: None,
             max_re: Statistics::of(&summary.max_re, 1.0),
             modes: modes(&labelled, stable.samples),
             real_eigenvalues: real_eigenvalues(&labelled, stable.samples),

@@ -1,6 +1,7 @@
 //! Every detail of an answer of `eval` and `reference`: all modes, all components, all indices.
 
 use super::eval::{EvalReport, RealReport, SobolReport, Statistics};
+use super::extrapolation;
 use super::layout::{Facts, width, wrapped};
 use super::numbers::{share, significant};
 use super::table::{Align, Table};
@@ -26,6 +27,9 @@ impl EvalReport {
             let words = format!("model minus surrogate, at 95 % of points left out{place}");
             facts.add("error of max Re λ", format!("{low} to {high} 1/s"), words);
         }
+        if let Some((name, value, words)) = self.extrapolation() {
+            facts.add(name, value, words);
+        }
         writeln!(f, "{facts:columns$}")?;
         if self.has_ranks() {
             writeln!(f, "{:columns$}", self.mode_table())?;
@@ -44,6 +48,13 @@ impl EvalReport {
         }
         let sobol = self.sobol_table(columns);
         if sobol.is_empty() { Ok(()) } else { write!(f, "\n{sobol}") }
+    }
+
+    /// Which share of the samples lies beyond all model runs, and what that leaves open.
+    pub(super) fn extrapolation(&self) -> Option<(&'static str, String, String)> {
+        let (proportion, bounds) = (self.extrapolated_proportion?, self.extrapolated_bounds.as_ref()?);
+        let words = format!("beyond all model runs in some input; {}", extrapolation::consequence(bounds));
+        Some(("extrapolated", share(proportion), words))
     }
 
     /// The residual quantiles at 2.5 and 97.5 %.

@@ -11,6 +11,7 @@ mod dependence;
 mod eval;
 mod eval_details;
 mod eval_text;
+mod extrapolation;
 mod fit;
 mod inspect;
 mod judgement;

@@ -61,6 +61,9 @@ impl SurrogatePage<'_> {
         let eval = self.eval;
         page.lead(&eval.verdict);
         page.facts(&eval.facts().pairs());
+        if let Some((name, value, words)) = eval.extrapolation() {
+            page.facts(&[(name, format!("{value}; {words}"))]);
+        }
         eval.warnings.iter().for_each(|warning| page.warning(warning));
         if let Some(Validation { compare, .. }) = &self.validation {
             let checked = format!(

@@ -3,6 +3,7 @@
 use super::coverage::Bounds;
 use super::dependence::DependenceReport;
 use super::eval::QuantileReport;
+use super::extrapolation;
 use super::judgement::judged_by;
 use super::survey::{EventReport, LEVEL, events};
 use pcc_evaluate::evaluation::{Cell, Condition, Sweep};
@@ -51,7 +52,7 @@ pub struct SweepReport {
     /// Quantiles of max Re λ of the model minus its leave-one-out prediction, in 1/s, from the file: what the intervals
     /// do not hold.
     pub max_re_residuals: Vec<QuantileReport>,
-    /// What to know of a surrogate whose model did not answer everywhere; absent if it did.
+    /// What to know where the model did not answer, and where it was not run; absent if there is nothing.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
     /// The inputs of the surrogate, whose units and labels head columns and axes.
@@ -96,6 +97,10 @@ pub struct SweepPoint {
     /// Between what the shares lie, whatever it would have answered there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
+    /// Share of samples beyond all model runs in at least one input; absent if runs fill the laws of all inputs, and if
+    /// the file does not say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub extrapolated_proportion: Option<f64>,
     /// Other events that were counted.
     pub events: Vec<EventReport>,
 }
@@ -125,6 +130,7 @@ impl SweepReport {
                 surrogate_band: band(cell),
                 unanswered_proportion: found.unanswered_at.get(number).map(|unanswered| unanswered.proportion()),
                 bounds: found.unanswered_at.get(number).map(Bounds::of),
+                extrapolated_proportion: extrapolation::of(&cell.total).map(|(proportion, _)| proportion),
                 events: events(question, cell),
             }
         };
@@ -151,6 +157,8 @@ impl SweepReport {
             warnings: super::coverage::warning(found.surrogate).into_iter().collect(),
             elapsed_seconds: found.elapsed_seconds,
         };
+        let proportions: Vec<_> = report.points.iter().map(|point| point.extrapolated_proportion).collect();
+        report.warnings.extend(extrapolation::warning_of_sweep(surrogate, &proportions));
         report.verdict = report.verdict_sentence();
         report
     }

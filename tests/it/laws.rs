@@ -12,7 +12,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 /// An oscillator with λ = (Σ inputs − 1.1) ± ≈10i.
-fn oscillator(inputs: &[(&str, &str)], threshold: f64, rest: &str) -> String {
+pub(crate) fn oscillator(inputs: &[(&str, &str)], threshold: f64, rest: &str) -> String {
     let names: Vec<&str> = inputs.iter().map(|(name, _)| *name).collect();
     let laws: String = inputs.iter().map(|(name, law)| format!("{name} = {{ distribution = {law} }}\n")).collect();
     format!(

@@ -17,6 +17,7 @@ mod determinism;
 mod documents;
 mod endings;
 mod evaluation;
+mod extrapolation;
 mod field;
 mod full_expansions;
 mod golden_file;

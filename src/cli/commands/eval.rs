@@ -196,12 +196,16 @@ fn at_points(
 ) -> anyhow::Result<PointsReport> {
     let plan = Plan::new(surrogate);
     let file = PointsFile::open(points, &surrogate.inputs, extrapolate)?;
-    let unanswered = Cell::new(0);
+    let (unanswered, extrapolated) = (Cell::new(0), Cell::new(0));
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
         let standardized: Vec<Vec<f64>> = group.iter().map(|point| surrogate.inputs.standardized(point)).collect();
         if let Some(coverage) = &surrogate.coverage {
             let count = standardized.iter().filter(|point| coverage.is_unanswered(point)).count();
             unanswered.set(unanswered.get() + count as u64);
+        }
+        if let Some(domain) = &surrogate.trained_domain {
+            let count = standardized.iter().filter(|point| !domain.holds(point)).count();
+            extrapolated.set(extrapolated.get() + count as u64);
         }
         let references: Vec<&[f64]> = standardized.iter().map(Vec::as_slice).collect();
         let block = evaluate_points(surrogate, &plan, &references);
@@ -213,6 +217,7 @@ fn at_points(
         points: count,
         stable_points: stable,
         unanswered_points: surrogate.coverage.as_ref().map(|_| unanswered.get()),
+        extrapolated_points: surrogate.trained_domain.as_ref().map(|_| extrapolated.get()),
         file: out.display().to_string(),
     })
 }

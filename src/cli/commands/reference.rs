@@ -87,5 +87,11 @@ fn at_points(
         let results = answers.into_iter().map(|answer| (answer.eigenvalues, answer.top)).collect();
         Ok(Evaluated { labels: reference.labels().to_vec(), results })
     })?;
-    Ok(PointsReport { points: count, stable_points: stable, unanswered_points: None, file: out.display().to_string() })
+    Ok(PointsReport {
+        points: count,
+        stable_points: stable,
+        unanswered_points: None,
+        extrapolated_points: None,
+        file: out.display().to_string(),
+    })
 }

@@ -21,6 +21,9 @@ const COMMANDS: [(&str, &[&str]); 6] = [
         &[
             "eval clutch.pcc -n 1e4 --critical mu --events flutter --quantiles --histogram",
             "eval clutch.pcc -n 1e4 --sweep mu=0:0.5:2",
+            "build normal.toml -o normal.pcc",
+            "eval normal.pcc -n 1e4",
+            "eval normal.pcc --points points.csv --out results.csv",
         ],
     ),
     ("compare", &["compare clutch.pcc --study surrogates/clutch-r3.toml -n 1e3"]),
@@ -38,6 +41,16 @@ kind = "table"
 eigenvalues = 2
 [inputs]
 speed = { distribution = "uniform", lower = 1.0, upper = 12.0 }
+"#;
+
+/// Samples of a normal input lie beyond all runs.
+const NORMAL: &str = r#"
+format = 1
+name = "normal"
+[model]
+kind = "clutch"
+[inputs]
+k_p = { distribution = "normal", mean = 16e6, cv = 0.03 }
 "#;
 
 fn collect(value: &Value, fields: &mut BTreeSet<String>) {
@@ -69,7 +82,9 @@ fn listed_fields_are_printed() {
     std::fs::create_dir(folder.path().join("surrogates")).unwrap();
     let study = "surrogates/clutch-r3.toml";
     std::fs::copy(repository(study), folder.path().join(study)).unwrap();
-    std::fs::write(folder.path().join("table.toml"), TABLE).unwrap();
+    for (name, content) in [("table.toml", TABLE), ("normal.toml", NORMAL), ("points.csv", "k_p\n16e6\n")] {
+        std::fs::write(folder.path().join(name), content).unwrap();
+    }
     let page = Page::read("docs/reference/json.md").lines.join("\n");
     for (title, commands) in COMMANDS {
         let section = page.split("\n## ").find(|section| section.lines().next() == Some(title)).unwrap();

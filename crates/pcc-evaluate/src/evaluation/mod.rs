@@ -26,6 +26,7 @@ pub use kernel::plan::{Plan, Workspace};
 pub use kernel::points::evaluate_points;
 pub use kernel::results::Results;
 pub use questions::division::Division;
+pub use questions::extrapolated::Extrapolated;
 pub use questions::findings::{Answer, Cell, Findings};
 pub use questions::histogram::Histogram;
 pub use questions::monte_carlo::monte_carlo;

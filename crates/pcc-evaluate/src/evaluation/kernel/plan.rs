@@ -60,6 +60,11 @@ impl Workspace {
         &mut self.points
     }
 
+    /// The same, to read.
+    pub fn points(&self) -> &[Lanes] {
+        &self.points
+    }
+
     /// What [`Plan::evaluate`] found.
     pub fn results(&self) -> &Results {
         &self.results

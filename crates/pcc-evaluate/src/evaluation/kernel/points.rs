@@ -50,12 +50,12 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Evaluates `count` points. `fill` writes the standardized coordinates of the points from the given number on, one
-    /// entry per input; `visit` is given results and number of points, block by block.
+    /// entry per input; `visit` is given these coordinates, results and number of points, block by block.
     pub fn each_block(
         &mut self,
         count: usize,
         mut fill: impl FnMut(usize, &mut [Lanes]),
-        mut visit: impl FnMut(&Results, usize),
+        mut visit: impl FnMut(&[Lanes], &Results, usize),
     ) {
         if self.plan.mesh().elements().len() > 1 {
             return self.by_element(count, fill, visit);
@@ -63,7 +63,7 @@ impl<'a> Evaluator<'a> {
         for start in (0..count).step_by(BLOCK_POINTS) {
             fill(start, self.workspace.points_mut());
             self.plan.evaluate(0, &mut self.workspace);
-            visit(self.workspace.results(), BLOCK_POINTS.min(count - start));
+            visit(self.workspace.points(), self.workspace.results(), BLOCK_POINTS.min(count - start));
         }
     }
 
@@ -71,20 +71,20 @@ impl<'a> Evaluator<'a> {
     /// the point with the given number.
     pub fn evaluate(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), block: &mut Block) {
         let fill = in_lanes(count, self.point.len(), set_point);
-        self.each_block(count, fill, |results, lanes| append(results, lanes, block));
+        self.each_block(count, fill, |_, results, lanes| append(results, lanes, block));
     }
 
     /// Evaluates `count` points and appends what decides at each to `list`.
     pub fn tops(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<Top>) {
         let fill = in_lanes(count, self.point.len(), set_point);
-        self.each_block(count, fill, |results, lanes| list.extend((0..lanes).map(|lane| top(results, lane))));
+        self.each_block(count, fill, |_, results, lanes| list.extend((0..lanes).map(|lane| top(results, lane))));
     }
 
     /// The same with the position among the surrogate's labels of the eigenvalue that decides.
     pub fn deciding(&mut self, count: usize, set_point: impl FnMut(usize, &mut [f64]), list: &mut Vec<(Top, usize)>) {
         let margin = self.surrogate.verdict.margin;
         let fill = in_lanes(count, self.point.len(), set_point);
-        self.each_block(count, fill, |results, lanes| {
+        self.each_block(count, fill, |_, results, lanes| {
             for lane in 0..lanes {
                 let excess = |k: usize| {
                     margin.excess(Complex::new(results.growth_rates[k].0[lane], results.angular_frequencies[k].0[lane]))
@@ -101,7 +101,7 @@ impl<'a> Evaluator<'a> {
         &mut self,
         count: usize,
         mut fill: impl FnMut(usize, &mut [Lanes]),
-        mut visit: impl FnMut(&Results, usize),
+        mut visit: impl FnMut(&[Lanes], &Results, usize),
     ) {
         let dimension = self.point.len();
         let blocks = count.div_ceil(BLOCK_POINTS);
@@ -118,8 +118,8 @@ impl<'a> Evaluator<'a> {
             }
         }
         self.order = order;
-        for (number, results) in self.results.iter().enumerate() {
-            visit(results, BLOCK_POINTS.min(count - number * BLOCK_POINTS));
+        for (number, (points, results)) in self.points.chunks_exact(dimension).zip(&self.results).enumerate() {
+            visit(points, results, BLOCK_POINTS.min(count - number * BLOCK_POINTS));
         }
     }
 

@@ -4,6 +4,7 @@
 //! replicate. Series are divided into chunks; chunks are numbered through all series, and a shard is a range of
 //! numbers.
 
+use super::extrapolated::Extrapolated;
 use super::tally::Tally;
 use std::ops::Range;
 
@@ -26,6 +27,8 @@ pub struct Division {
     pub(crate) components: usize,
     pub(crate) eigenvalues: usize,
     pub(crate) events: usize,
+    /// Whether samples outside the box of the model runs are counted.
+    pub(crate) counts_extrapolated: bool,
     /// Bins of each histogram.
     pub(crate) bins: Vec<usize>,
     pub(crate) is_sweep: bool,
@@ -92,8 +95,22 @@ impl Division {
             && summary.eigenvalues.len() == self.eigenvalues
             && diverging.chain([diverges]).all(|(divergent, most)| divergent <= most)
             && tally.events.len() == self.events
+            && self.fits_extrapolated(tally)
             && summary.moments().all(|moments| moments.are_of(samples))
             && counts.chain([summary.stable.saturating_add(summary.unstable)]).all(|count| count <= samples)
+    }
+
+    /// Whether what was counted outside the box of the model runs is a part of all samples.
+    fn fits_extrapolated(&self, tally: &Tally) -> bool {
+        let Some(Extrapolated { samples, stable, unstable }) = tally.extrapolated else {
+            return !self.counts_extrapolated;
+        };
+        let summary = &tally.summary;
+        self.counts_extrapolated
+            && samples <= summary.samples()
+            && stable <= summary.stable
+            && unstable <= summary.unstable
+            && stable.saturating_add(unstable) <= samples
     }
 }
 
@@ -111,6 +128,7 @@ mod tests {
             components: 0,
             eigenvalues: 0,
             events: 0,
+            counts_extrapolated: false,
             bins: Vec::new(),
             is_sweep: cells > 1,
         }

@@ -1,6 +1,7 @@
 //! What is asked about samples, and what was found: a question becomes a survey, a survey findings.
 
 pub(super) mod division;
+pub(super) mod extrapolated;
 pub(super) mod findings;
 pub(super) mod histogram;
 pub(super) mod monte_carlo;

@@ -5,6 +5,7 @@
 //! shards.
 
 use super::division::Division;
+use super::extrapolated::Sides;
 use super::findings::Findings;
 use super::histogram::Histogram;
 use super::quantity::Quantity;
@@ -62,6 +63,8 @@ pub struct Survey<'a> {
     /// One per replicate.
     sources: Vec<Source>,
     watches: Vec<Watch>,
+    /// The box that the model runs spanned.
+    trained: Option<Sides>,
     /// What the histograms are of: those asked for, then those for quantiles.
     binned: Vec<(Quantity, &'a Bins)>,
 }
@@ -113,11 +116,13 @@ impl<'a> Survey<'a> {
             components: kept(surrogate.component_count()),
             eigenvalues: kept(surrogate.labels().len()),
             events: watches.len(),
+            counts_extrapolated: surrogate.trained_domain.is_some(),
             bins: binned.iter().map(|(_, bins)| bins.bins as usize).collect(),
             is_sweep,
         };
         let plan = Plan::with_instructions(surrogate, instructions);
-        Ok(Self { surrogate, plan, division, regions, sources, watches, binned })
+        let trained = surrogate.trained_domain.as_ref().map(Sides::of);
+        Ok(Self { surrogate, plan, division, regions, sources, watches, trained, binned })
     }
 
     /// How the samples are divided.
@@ -205,11 +210,12 @@ impl<'s> Worker<'s> {
         let Division { components, eigenvalues, .. } = survey.division;
         let (shifts, has_reals) = (survey.surrogate.decision.band_shifts(), survey.surrogate.has_real_eigenvalues());
         let judged = (survey.surrogate.verdict, shifts);
-        let mut gathering = Gathering::new((components, eigenvalues), has_reals, judged, &survey.watches);
+        let mut gathering =
+            Gathering::new((components, eigenvalues), has_reals, judged, &survey.watches, survey.trained.as_ref());
         let region = survey.regions.at(cell);
         let draw = |start, points: &mut [_]| survey.draw(&region, replicate, samples.start + start as u64, points);
-        let add = |results: &Results, lanes| {
-            survey.plan.instructions().run(Adding { gathering: &mut gathering, results, lanes });
+        let add = |points: &[Lanes], results: &Results, lanes| {
+            survey.plan.instructions().run(Adding { gathering: &mut gathering, points, results, lanes });
             for (histogram, (quantity, bins)) in histograms.iter_mut().zip(&survey.binned) {
                 histogram.add(&quantity.values(results), lanes, bins);
             }
@@ -228,7 +234,7 @@ impl<'s> Worker<'s> {
         let count = (samples.end - samples.start) as usize;
         let (mut seen, mut found) = (0, None);
         let draw = |start, points: &mut [_]| survey.draw(region, replicate, samples.start + start as u64, points);
-        self.evaluator.each_block(count, draw, |results, lanes| {
+        self.evaluator.each_block(count, draw, |_, results, lanes| {
             let bad = results.max_re.0[..lanes].iter().position(|max_re| !max_re.is_finite());
             found = found.or(bad.map(|lane| seen + lane));
             seen += BLOCK_POINTS;

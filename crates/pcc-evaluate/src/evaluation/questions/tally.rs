@@ -3,6 +3,7 @@
 //! Moments of a chunk come from sums of deviations from the mean of its first block, in 16 interleaved parts, whatever
 //! the width of the processor's vectors: the bits are the same everywhere.
 
+use super::extrapolated::{Extrapolated, Sides};
 use super::quantity::{Quantity, damping_ratios};
 use crate::components::{EigenvalueSummary, Summary, beyond_rounding};
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
@@ -24,6 +25,9 @@ pub struct Tally {
     pub summary: Summary,
     /// Samples in each event.
     pub events: Vec<u64>,
+    /// Samples outside the box that the model runs spanned; `None` if there is no such box.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extrapolated: Option<Extrapolated>,
 }
 
 impl Tally {
@@ -37,6 +41,9 @@ impl Merge for Tally {
     fn merge(&mut self, next: &Self) {
         self.summary.merge(&next.summary);
         self.events.iter_mut().zip(&next.events).for_each(|(own, added)| *own += added);
+        if let (Some(own), Some(added)) = (&mut self.extrapolated, &next.extrapolated) {
+            own.merge(added);
+        }
     }
 }
 
@@ -57,6 +64,9 @@ pub(crate) struct Gathering<'a> {
     /// Errors of max Re λ that could be, in 1/s.
     shifts: [f64; 2],
     watches: &'a [Watch],
+    /// The box that the model runs spanned.
+    trained: Option<&'a Sides>,
+    extrapolated: Extrapolated,
     /// Whether eigenvalues can be real: where none can, nothing is counted of it.
     has_reals: bool,
     count: u64,
@@ -101,6 +111,7 @@ impl<'a> Gathering<'a> {
         has_reals: bool,
         (verdict, shifts): (VerdictBasis, [f64; 2]),
         watches: &'a [Watch],
+        trained: Option<&'a Sides>,
     ) -> Self {
         let none = EigenvalueSums {
             growth_rate: Sums::NONE,
@@ -116,6 +127,8 @@ impl<'a> Gathering<'a> {
             verdict,
             shifts,
             watches,
+            trained,
+            extrapolated: Extrapolated::default(),
             has_reals,
             count: 0,
             stable: 0,
@@ -160,13 +173,14 @@ impl<'a> Gathering<'a> {
             components: self.components.iter().map(moments).collect(),
             eigenvalues: self.eigenvalues.iter().map(eigenvalue).collect(),
         };
-        Tally { summary, events: self.events.clone() }
+        Tally { summary, events: self.events.clone(), extrapolated: self.trained.map(|_| self.extrapolated) }
     }
 }
 
-/// Adds the first `lanes` samples of a block to a gathering.
+/// Adds the first `lanes` samples of a block, at these points, to a gathering.
 pub(crate) struct Adding<'a, 'b> {
     pub gathering: &'a mut Gathering<'b>,
+    pub points: &'a [Lanes],
     pub results: &'a Results,
     pub lanes: usize,
 }
@@ -176,7 +190,7 @@ impl WithSimd for Adding<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { gathering, results, lanes } = self;
+        let Self { gathering, points, results, lanes } = self;
         let (max_re, excess) = (&results.max_re, &results.excess);
         let is_first = gathering.count == 0;
         gathering.count += lanes as u64;
@@ -185,6 +199,14 @@ impl WithSimd for Adding<'_, '_> {
         gathering.unstable += count(excess, lanes, |value| value > 0.0);
         for (counted, shift) in gathering.stable_if_shifted.iter_mut().zip(gathering.shifts) {
             *counted += count(excess, lanes, |value| (value != 0.0) & (value + shift < 0.0));
+        }
+        if let Some(sides) = gathering.trained {
+            let distances = sides.distances(points);
+            let counted = &mut gathering.extrapolated;
+            counted.samples += count(&distances, lanes, |distance| distance > 0.0);
+            counted.stable += count_both(&distances, excess, lanes, |distance, value| (distance > 0.0) & (value < 0.0));
+            counted.unstable +=
+                count_both(&distances, excess, lanes, |distance, value| (distance > 0.0) & (value > 0.0));
         }
         for (counted, watch) in gathering.events.iter_mut().zip(gathering.watches) {
             let (values, threshold) = (watch.quantity.values(results), watch.threshold);
