@@ -12,7 +12,7 @@ use super::table::{Align, Table};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
 use pcc_evaluate::foundation::{count, plural};
-use pcc_evaluate::surrogate::{Setting, SettingValue};
+use pcc_evaluate::surrogate::{Setting, SettingValue, Surrogate};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -119,8 +119,20 @@ pub struct InputReport {
     pub lower: Option<f64>,
     /// Upper bound; null if there is none.
     pub upper: Option<f64>,
+    /// Between which values the model was run; null where runs fill the law, and if the file does not say.
+    pub trained: Option<TrainedReport>,
     /// Polynomial family.
     pub family: &'static str,
+}
+
+/// Between which values of an input the model was run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct TrainedReport {
+    /// The smallest.
+    pub lower: f64,
+    /// The largest.
+    pub upper: f64,
 }
 
 /// Cost of one evaluation.
@@ -170,7 +182,7 @@ impl InspectReport {
             margin: MarginReport::of(surrogate.verdict.margin),
             tolerance: surrogate.verdict.tolerance,
             band: outside_band(surrogate),
-            inputs: surrogate.inputs.inputs().iter().map(input).collect(),
+            inputs: (0..surrogate.inputs.dimension()).map(|j| input(surrogate, j)).collect(),
             dependence: DependenceReport::of(&surrogate.inputs),
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
@@ -221,7 +233,8 @@ fn setting(setting: &Setting) -> (String, serde_json::Value) {
     (setting.key.clone(), value)
 }
 
-fn input(input: &pcc_evaluate::probability::inputs::Input) -> InputReport {
+fn input(surrogate: &Surrogate, j: usize) -> InputReport {
+    let input = &surrogate.inputs.inputs()[j];
     let [lower, upper] = input.marginal.support().map(|end| end.is_finite().then_some(end));
     let parameter = |(name, value): (&'static str, f64)| (name.to_owned(), value);
     InputReport {
@@ -232,6 +245,7 @@ fn input(input: &pcc_evaluate::probability::inputs::Input) -> InputReport {
         parameters: input.marginal.parameters().into_iter().map(parameter).collect(),
         lower,
         upper,
+        trained: surrogate.trained_interval(j).map(|[lower, upper]| TrainedReport { lower, upper }),
         family: input.marginal.family().name(),
     }
 }
@@ -243,14 +257,22 @@ impl fmt::Display for InspectReport {
         write_verdict(f, &self.verdict)?;
         write!(f, "{:columns$}", self.facts())?;
         if !f.alternate() {
-            return writeln!(f, "\n{:columns$}\nmore: --details", self.input_table());
+            write!(f, "\n{:columns$}\n", self.input_table())?;
+            if let Some(ranges) = self.range_table() {
+                writeln!(f, "{ranges:columns$}")?;
+            }
+            return writeln!(f, "more: --details");
         }
         write!(f, "{:columns$}", self.further_facts())?;
         writeln!(f)?;
         // Too long for what stands before facts.
         self.hashes().iter().try_for_each(|(name, hash)| writeln!(f, "{name:<12}  {hash}"))?;
         let (inputs, components) = (self.input_table(), FitReport::table(&self.components));
-        write!(f, "\n{inputs:columns$}\n{components:columns$}")
+        write!(f, "\n{inputs:columns$}")?;
+        if let Some(ranges) = self.range_table() {
+            write!(f, "\n{ranges:columns$}")?;
+        }
+        write!(f, "\n{components:columns$}")
     }
 }
 
@@ -342,6 +364,32 @@ impl InspectReport {
             inputs.row(row);
         }
         inputs
+    }
+}
+
+impl InspectReport {
+    /// Where the laws of the inputs begin and end, and where the model was run; `None` if all are uniform: bounds say
+    /// that of them.
+    pub(super) fn range_table(&self) -> Option<Table> {
+        if self.inputs.iter().all(|input| input.distribution == "uniform") {
+            return None;
+        }
+        let right = Align::Right;
+        let mut columns = vec![("input", Align::Left), ("law from", right), ("to", right)];
+        let is_trained = self.inputs.iter().any(|input| input.trained.is_some());
+        columns.extend(is_trained.then_some([("model run from", right), ("to", right)]).into_iter().flatten());
+        let mut table = Table::new(&columns);
+        for input in &self.inputs {
+            let end = |end: Option<f64>, infinite: &str| end.map_or_else(|| infinite.to_owned(), shortest);
+            let law = [end(input.lower, "−∞"), end(input.upper, "∞")];
+            let run = match input.trained {
+                Some(found) => [found.lower, found.upper].map(|end| significant(end, 4)),
+                None => ["everywhere".to_owned(), String::new()],
+            };
+            let row = [input.name.clone()].into_iter().chain(law).chain(run);
+            table.row(row.take(columns.len()));
+        }
+        Some(table)
     }
 }
 

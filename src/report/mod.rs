@@ -7,6 +7,7 @@ mod charts;
 mod compare;
 mod confidence;
 mod coverage;
+mod density;
 mod dependence;
 mod eval;
 mod eval_details;

@@ -2,7 +2,7 @@
 //! light and in dark.
 
 use super::table::{Align, Table};
-use pcc_charts::{Chart, STYLE, escape};
+use pcc_charts::{Chart, STYLE, Sparkline, escape};
 use std::fmt::Write;
 
 /// Nothing but the styles and links inside the page may be loaded, whatever names it shows.
@@ -17,6 +17,7 @@ const PAGE_STYLE: &str = "
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 74rem; padding: 1rem; background: var(--paper); color: var(--ink); font: 1rem/1.5 system-ui, sans-serif; overflow-wrap: anywhere; }
 .chart { --chart-paper: var(--paper); width: 100%; height: auto; }
+.chart-sparkline { width: 7.5rem; }
 h1 { font-size: 1.6rem; line-height: 1.25; margin: 0.5rem 0; }
 h2 { font-size: 1.2rem; margin: 2rem 0 0.5rem; border-bottom: 1px solid var(--line); padding-bottom: 0.25rem; }
 p, li, dd { max-width: 46rem; }
@@ -91,6 +92,16 @@ impl Page {
 
     /// A table.
     pub fn table(&mut self, table: &Table) {
+        self.table_with_pictures(table, "", &[]);
+    }
+
+    /// A table with a picture at the end of each row, under a head of its own.
+    pub fn table_with_pictures(&mut self, table: &Table, head: &str, pictures: &[Sparkline]) {
+        let picture = |row: usize| match row.checked_sub(1) {
+            _ if pictures.is_empty() => String::new(),
+            None => format!("<th>{}</th>", escape(head)),
+            Some(at) => format!("<td>{}</td>", pictures.get(at).map_or_else(String::new, Sparkline::to_svg)),
+        };
         let cells = |tag: &str, row: &[String]| {
             let cell = |(cell, align): (&String, &Align)| match align {
                 Align::Left => format!("<{tag}>{}</{tag}>", escape(cell)),
@@ -104,7 +115,7 @@ impl Page {
                 0 => ("th", "<thead>", "</thead>\n<tbody>"),
                 _ => ("td", "", ""),
             };
-            let _ = writeln!(self.body, "{before}<tr>{}</tr>{after}", cells(tag, row));
+            let _ = writeln!(self.body, "{before}<tr>{}{}</tr>{after}", cells(tag, row), picture(k));
         }
         self.body.push_str("</tbody></table></div>\n");
     }

@@ -2,6 +2,7 @@
 
 use super::charts::{density_chart, mode_charts, shapley_charts, sobol_charts, spectrum_chart, validation_chart};
 use super::compare::CompareReport;
+use super::density;
 use super::eval::EvalReport;
 use super::inspect::InspectReport;
 use super::numbers::{share, significant};
@@ -126,7 +127,17 @@ impl SurrogatePage<'_> {
 
     fn content(&self, page: &mut Page) {
         page.section("Inputs");
-        page.table(&self.inspect.input_table());
+        let sparkline = |(j, input)| density::sparkline(input, self.surrogate.trained_interval(j));
+        let densities: Vec<_> = self.surrogate.inputs.inputs().iter().enumerate().map(sparkline).collect();
+        page.table_with_pictures(&self.inspect.input_table(), "density", &densities);
+        if let Some(ranges) = self.inspect.range_table() {
+            page.table(&ranges);
+        }
+        if self.surrogate.trained_domain.is_some() {
+            page.paragraph(
+                "Densities are filled where the model was run, up to the marks. Beyond, the surrogate extrapolates.",
+            );
+        }
         page.section("How the surrogate was made");
         page.facts(&self.inspect.facts().pairs());
         page.facts(&self.inspect.further_facts().pairs());

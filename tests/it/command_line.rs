@@ -103,7 +103,9 @@ fn a_report_is_a_page_that_replaces_pages_only() {
     {
         assert!(html.contains(part), "{part} is missing");
     }
-    assert_eq!(html.matches("<svg").count(), html.matches("<figcaption>").count());
+    // The density of each input, too.
+    assert_eq!(html.matches("class=\"chart chart-sparkline").count(), 2);
+    assert_eq!(html.matches("<svg").count(), html.matches("<figcaption>").count() + 2);
     for loaded in ["<script", "<img", "<link", "<iframe", " src=", "@import", "url(h"] {
         assert!(!html.contains(loaded), "{loaded}");
     }

@@ -7,6 +7,8 @@
 //! Besides points, lines and bars there are [`Cells`]: a share over two parameters, such as a stability map. They are
 //! shaded in ten levels, whose hue changes at one half, and the legend has a scale for them.
 //!
+//! A [`Sparkline`] is a curve as small as a word, for a cell of a table.
+//!
 //! Colours, line widths and fonts are left to the style sheet, so one picture follows light and dark; the markup holds
 //! geometry only. The output has no scripts and no references to other files, and depends on nothing but the input.
 //! No input makes it panic: numbers that cannot be drawn are skipped, and names of any kind become plain text.
@@ -27,6 +29,7 @@ mod numbers;
 mod path;
 mod scale;
 mod sheet;
+mod sparkline;
 mod style;
 #[cfg(test)]
 mod tests;
@@ -34,6 +37,7 @@ mod text;
 mod ticks;
 
 pub use sheet::sheet;
+pub use sparkline::Sparkline;
 pub use style::STYLE;
 pub use text::escape;
 
