@@ -173,7 +173,7 @@ pub struct CriticalReport {
     pub head: String,
     /// Samples of the other inputs.
     pub samples: u64,
-    /// Where values are looked for: the lower bound, of an input whose law is not uniform the quantile at 1/8192.
+    /// Where values are looked for: the lower bound, or the quantile at 1/8192 of an input that lacks a bound.
     pub from: f64,
     /// The upper bound, or the quantile at 8191/8192.
     pub to: f64,
