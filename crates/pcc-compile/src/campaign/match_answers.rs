@@ -234,23 +234,27 @@ fn difference(a: &[Complex<f64>], b: &[Complex<f64>]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcc_evaluate::probability::inputs::{LogNormal, Normal, TruncatedNormal, Uniform};
+    use pcc_evaluate::probability::inputs::{Parameters, Uniform};
+
+    fn law(name: &str, given: &[(&'static str, f64)]) -> Marginal {
+        Marginal::named(name, &Parameters::of(given.iter().copied())).unwrap()
+    }
 
     #[test]
     fn widths_are_those_of_what_is_probable() {
         let uniform = Marginal::Uniform(Uniform::new(15.2e6, 16.8e6).unwrap());
         assert_eq!(width(&uniform, 0.0), uniform.physical(1.0) - uniform.physical(-1.0));
         // Twice the middle half of a normal law is 4 · 0.67449 standard deviations.
-        let normal = Normal::new(10.0, 2.0).unwrap();
+        let normal = law("normal", &[("mean", 10.0), ("std", 2.0)]);
         let known = 4.0 * 0.674_489_750_196_081_7 * 2.0;
-        assert!((width(&Marginal::Normal(normal), 11.0) - known).abs() < 1e-12);
-        assert_eq!(width(&Marginal::Normal(normal), 20.0), 20.0);
+        assert!((width(&normal, 11.0) - known).abs() < 1e-12);
+        assert_eq!(width(&normal, 20.0), 20.0);
         // Where ξ is at most 1 there is nothing of this one.
-        let beyond = TruncatedNormal::new(Normal::new(0.0, 1.0).unwrap(), Some(2.0), Some(3.0)).unwrap();
-        let width_beyond = width(&Marginal::TruncatedNormal(beyond), 2.1);
+        let beyond = law("normal", &[("mean", 0.0), ("std", 1.0), ("lower", 2.0), ("upper", 3.0)]);
+        let width_beyond = width(&beyond, 2.1);
         assert!((0.5..1.0).contains(&width_beyond), "{width_beyond}");
         // Four digits are enough for large values of a law with a long tail, too.
-        let long = Marginal::LogNormal(LogNormal::new(1.0, 3.0).unwrap());
+        let long = law("lognormal", &[("mean", 1.0), ("std", 3.0)]);
         assert!((1234.4 - 1234.0) < INPUT_TOLERANCE * width(&long, 1234.4) * 4.0);
     }
 }

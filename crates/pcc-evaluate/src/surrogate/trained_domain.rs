@@ -4,7 +4,7 @@
 //! stratum at either end. Of other variables they leave out the tails: there the surrogate extrapolates.
 
 use super::Surrogate;
-use crate::probability::inputs::{Germ, Input, InputSpace};
+use crate::probability::inputs::{Input, InputSpace};
 
 /// Most of the samples: a larger share of extrapolation is never foreseen.
 const MOST: f64 = 0.5;
@@ -37,7 +37,7 @@ pub struct TrainedDomain {
 
 /// Whether runs leave out the tails of an input.
 fn has_tails(input: &Input) -> bool {
-    input.marginal.germ() != Germ::Uniform
+    !input.marginal.is_divisible()
 }
 
 impl TrainedDomain {
@@ -105,15 +105,18 @@ impl Surrogate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::probability::inputs::{LogNormal, LogUniform, Marginal, Normal, TruncatedNormal, Uniform};
+    use crate::probability::inputs::{Marginal, Parameters, Polynomials};
 
     fn inputs() -> InputSpace {
-        let normal = Normal::new(1.0, 0.5).unwrap();
+        let law = |name, given: &[(&'static str, f64)], polynomials| {
+            let given = Parameters::of(given.iter().copied()).with_polynomials(polynomials);
+            Marginal::named(name, &given).unwrap()
+        };
         let laws = [
-            Marginal::Uniform(Uniform::new(0.0, 1.0).unwrap()),
-            Marginal::LogUniform(LogUniform::new(0.1, 1.0).unwrap()),
-            Marginal::LogNormal(LogNormal::new(1.0, 0.5).unwrap()),
-            Marginal::TruncatedNormal(TruncatedNormal::new(normal, Some(0.0), Some(2.0)).unwrap()),
+            law("uniform", &[("lower", 0.0), ("upper", 1.0)], None),
+            law("log-uniform", &[("lower", 0.1), ("upper", 1.0)], None),
+            law("lognormal", &[("mean", 1.0), ("std", 0.5)], Some(Polynomials::Hermite)),
+            law("normal", &[("mean", 1.0), ("std", 0.5), ("lower", 0.0), ("upper", 2.0)], None),
         ];
         InputSpace::new((0..).zip(laws).map(|(k, law)| Input::new(format!("x{k}"), law)).collect()).unwrap()
     }

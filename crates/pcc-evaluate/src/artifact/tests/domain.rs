@@ -2,13 +2,13 @@
 //! makes no sense.
 
 use super::*;
-use crate::probability::inputs::{Input, InputSpace, Marginal, Normal};
+use crate::probability::inputs::{Input, InputSpace, Marginal, Parameters};
 use crate::surrogate::TrainedDomain;
 
 /// The surrogate with a normal second input, whose box is not known.
 static NORMAL: LazyLock<Surrogate> = LazyLock::new(|| {
     let mut inputs = SURROGATE.inputs.inputs().to_vec();
-    let law = Marginal::Normal(Normal::new(16e6, 4e5).unwrap());
+    let law = Marginal::named("normal", &Parameters::of([("mean", 16e6), ("std", 4e5)])).unwrap();
     inputs[1] = Input { marginal: law, ..inputs[1].clone() };
     let mut surrogate = Surrogate { inputs: InputSpace::new(inputs).unwrap(), ..SURROGATE.clone() };
     surrogate.self_test = surrogate.make_self_test(surrogate.self_test.points.clone());

@@ -247,7 +247,7 @@ impl InputSpace {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn middle(&self) -> Vec<f64> {
-        self.0.iter().map(|input| input.marginal.germ().at(0.0)).collect()
+        self.inputs.iter().map(|input| input.marginal.germ().at(0.0)).collect()
     }
 
     /// Whether every coordinate lies in its support.
