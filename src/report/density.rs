@@ -47,13 +47,17 @@ fn density(law: &Marginal) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcc_evaluate::probability::inputs::{Exponential, Normal, Uniform};
+    use pcc_evaluate::probability::inputs::{Parameters, Uniform};
     use std::f64::consts::TAU;
+
+    fn law(name: &str, given: &[(&'static str, f64)]) -> Marginal {
+        Marginal::named(name, &Parameters::of(given.iter().copied())).unwrap()
+    }
 
     #[test]
     fn curves_are_the_densities() {
-        let normal = density(&Marginal::Normal(Normal::new(3.0, 2.0).unwrap()));
-        let exponential = density(&Marginal::Exponential(Exponential::new(0.5).unwrap()));
+        let normal = density(&law("normal", &[("mean", 3.0), ("std", 2.0)]));
+        let exponential = density(&law("exponential", &[("mean", 0.5)]));
         let inner = |curve: &[[f64; 2]]| curve[2..curve.len() - 2].to_vec();
         for [x, y] in inner(&normal) {
             let exact = (-0.125 * (x - 3.0).powi(2)).exp() / (2.0 * TAU.sqrt());

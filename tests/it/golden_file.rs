@@ -86,12 +86,8 @@ fn meta(b: &mut B) -> Value {
 fn inputs(b: &mut B) -> Value {
     let interval: [Field; 2] = [("lower", &B::float), ("upper", &B::float)];
     let affine: [Field; 2] = [("center", &B::float), ("half_width", &B::float)];
-    let pieces: [Field; 4] = [
-        ("origin", &B::float),
-        ("scale", &B::float),
-        ("breaks", &B::floats),
-        ("coefficients", &|b| b.list(B::floats)),
-    ];
+    let pieces: [Field; 4] =
+        [("origin", &B::float), ("scale", &B::float), ("breaks", &B::floats), ("coefficients", &|b| b.list(B::floats))];
     let parameter = |b: &mut B| b.fields(&[("name", &B::text), ("value", &B::float)]);
     let law: [Field; 2] = [("name", &B::text), ("parameters", &|b| b.list(parameter))];
     let correlation = |b: &mut B| b.fields(&[("first", &u32_number), ("second", &u32_number), ("value", &B::float)]);

@@ -30,30 +30,34 @@ pub(crate) fn built() -> Surrogate {
     build(&Study::from_toml(&oscillator(&[("u", UNIFORM), ("x", NORMAL)], 1.1, "")).unwrap())
 }
 
-fn folder_with(study: &str) -> TempDir {
+pub(crate) fn folder_with(study: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("study.toml"), study).unwrap();
     folder
 }
 
-fn built_from(study: &str) -> TempDir {
+pub(crate) fn built_from(study: &str) -> TempDir {
     let folder = folder_with(study);
     output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
     folder
 }
 
-fn json(folder: &Path, arguments: &[&str]) -> Value {
+pub(crate) fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
 }
 
 #[track_caller]
-fn number(report: &Value, pointer: &str) -> f64 {
+pub(crate) fn number(report: &Value, pointer: &str) -> f64 {
     report.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} of {report}"))
 }
 
 /// A law, c, F(c), an interval, and F(c) on condition that the input lies there; from the distribution functions, by
 /// Python.
-const SHARES: [(&str, f64, f64, [f64; 2], f64); 8] = [
+const SHARES: [(&str, f64, f64, [f64; 2], f64); 12] = [
+    ("\"gamma\", mean = 1.0, std = 0.5", 1.1, 0.640552227211231, [0.8, 1.5], 0.5385850200593046),
+    ("\"gamma\", shape = 0.5, scale = 1.0", 0.8, 0.7940967892679318, [0.3, 1.2], 0.7334282548090078),
+    ("\"beta\", alpha = 2.0, beta = 3.0, lower = 0.5, upper = 1.5", 0.95, 0.60901875, [0.7, 1.2], 0.5822144799456151),
+    ("\"triangular\", lower = 0.5, mode = 1.0, upper = 2.5", 1.2, 0.4366666666666667, [0.8, 1.6], 0.5416666666666666),
     ("\"normal\", mean = 1.0, std = 0.2", 1.1, 0.6914624612740132, [0.8, 1.3], 0.6879036541480422),
     ("\"lognormal\", mean = 1.0, cv = \"25%\"", 1.1, 0.6950453214839031, [0.8, 1.3], 0.7181909160424771),
     ("\"log-uniform\", lower = 0.2, upper = 2.0", 0.7, 0.5440680443502756, [0.4, 1.5], 0.4233881712547671),
@@ -178,8 +182,8 @@ fn files_keep_laws_in_both_forms() {
     assert_eq!(inspect("built.pcc")["format"], "1.3");
     assert_eq!(fs::read(path.join("built.pcc")).unwrap(), fs::read(path.join("back.pcc")).unwrap());
     let shown = in_one_line(&output(path, &["inspect", "built.pcc"]));
-    assert!(shown.contains("x0 normal mean 1, std 0.2 hermite"), "{shown}");
-    assert!(shown.contains("x2 log-uniform lower 0.2, upper 2 legendre"), "{shown}");
+    assert!(shown.contains("x4 normal mean 1, std 0.2 hermite"), "{shown}");
+    assert!(shown.contains("x6 log-uniform lower 0.2, upper 2 legendre"), "{shown}");
 
     // Files that say a law in two ways, or of which the polynomials are others.
     let text = fs::read_to_string(path.join("there.json")).unwrap();
@@ -212,6 +216,13 @@ fn laws_that_make_no_sense_are_refused() {
         ("\"log-uniform\", lower = 2.0, upper = 1.0", "(2) is not below"),
         ("\"exponential\", mean = inf", "mean is inf"),
         ("\"weibull\", shape = 1.0, scale = -1.0", "scale is -1"),
+        ("\"gamma\", shape = 0.0, scale = 1.0", "shape is 0, but must be a positive number"),
+        ("\"gamma\", mean = 1.0, std = 1e-5", "take a normal law"),
+        ("\"beta\", mean = 2.0, std = 0.1", "alpha is"),
+        ("\"beta\", alpha = 1.0, beta = 2.0, lower = 1.0", "a beta law has alpha and beta"),
+        ("\"triangular\", lower = 1.0, mode = 3.0, upper = 2.0", "mode is 3, but must be between lower and upper"),
+        ("\"normal\", mean = 1.0, std = 0.1, polynomials = \"own\"", "leaves no choice of polynomials"),
+        ("\"gamma\", mean = 1.0, std = 0.1, polynomials = \"laguerre\"", "choose \"own\" or \"hermite\""),
         ("\"gauss\", mean = 1.0, std = 1.0", "choose \"uniform\", \"normal\", \"lognormal\", \"gamma\", \"beta\""),
     ] {
         let folder = folder_with(&oscillator(&[("x", law)], 1.1, ""));

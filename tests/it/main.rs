@@ -29,6 +29,7 @@ mod kills;
 mod laws;
 mod layers;
 mod matrices;
+mod measured_inputs;
 mod openturns;
 mod overwriting;
 mod programs;

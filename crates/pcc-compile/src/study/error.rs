@@ -1,6 +1,7 @@
 //! What can be wrong with a study file.
 
 use super::dependence::DependenceError;
+use super::measured::TableError;
 use crate::mechanics::model::matrices::MatricesError;
 use pcc_evaluate::probability::inputs::{DescriptionError, InputError, MarginalError};
 use thiserror::Error;
@@ -259,6 +260,15 @@ pub enum StudyError {
         /// Why.
         #[source]
         cause: MarginalError,
+    },
+    /// A table of measured values that gives none.
+    #[error("{place}: {cause}")]
+    Table {
+        /// Where.
+        place: Place,
+        /// Why.
+        #[source]
+        cause: TableError,
     },
     /// A unit or label that cannot be shown.
     #[error("{place}: {cause}")]

@@ -9,6 +9,7 @@ use pcc_evaluate::components::is_result_column;
 use pcc_evaluate::probability::inputs::{
     Description, DescriptionError, Input, InputSpace, Marginal, MarginalError, Parameters, Polynomials,
 };
+use std::path::Path;
 use toml::Spanned;
 
 impl Lines<'_> {
@@ -17,6 +18,7 @@ impl Lines<'_> {
         &self,
         table: Spanned<raw::Ordered<raw::Input>>,
         kind: Kind,
+        folder: &Path,
     ) -> Result<InputSpace, StudyError> {
         let place = self.place("inputs", &table);
         let mut inputs = Vec::new();
@@ -25,7 +27,7 @@ impl Lines<'_> {
             if is_result_column(&name) {
                 return Err(StudyError::ResultColumn { place: self.place(format!("inputs.{name}"), &raw), name });
             }
-            let marginal = self.marginal(&name, parameter, &raw)?;
+            let marginal = self.marginal(&name, parameter, &raw, folder)?;
             inputs.push(Input { description: self.unit_and_label(&name, raw.get_ref())?, marginal, name });
         }
         InputSpace::new(inputs).map_err(|cause| StudyError::Inputs { place, cause })
@@ -36,6 +38,7 @@ impl Lines<'_> {
         name: &str,
         parameter: Option<&Parameter>,
         raw: &Spanned<raw::Input>,
+        folder: &Path,
     ) -> Result<Marginal, StudyError> {
         let key = format!("inputs.{name}");
         let input = raw.get_ref();
@@ -63,9 +66,16 @@ impl Lines<'_> {
         let polynomials = input.polynomials.as_ref();
         let polynomials =
             polynomials.map(|word| self.word(&format!("{key}.polynomials"), word, &Polynomials::ALL)).transpose()?;
-        let given = Parameters::of(given.into_iter().filter_map(|(name, value)| Some((name, value?))))
-            .with_polynomials(polynomials);
-        let marginal = Marginal::named(input.distribution.get_ref(), &given).map_err(|cause| match cause {
+        let mut given: Vec<(&str, f64)> = given.into_iter().filter_map(|(name, value)| Some((name, value?))).collect();
+        let law = match input.distribution.get_ref().as_str() {
+            "data" => self.measured(&key, input, &given, folder)?,
+            law => levels(input).and_then(|levels| {
+                given.extend(levels);
+                given.extend(of_data(input).map(|name| (name, 0.0)));
+                Marginal::named(law, &Parameters::of(given).with_polynomials(polynomials))
+            }),
+        };
+        let marginal = law.map_err(|cause| match cause {
             MarginalError::Form { law: "uniform", .. } => StudyError::DistributionForm { place: place.clone() },
             cause => StudyError::Distribution { place: place.clone(), cause },
         })?;
@@ -100,6 +110,23 @@ impl Lines<'_> {
         }
         Ok(description)
     }
+}
+
+/// Levels with their weights.
+fn levels(input: &raw::Input) -> Result<Vec<(&'static str, f64)>, MarginalError> {
+    let values = input.values.as_deref().unwrap_or_default();
+    let weights = input.weights.clone().unwrap_or_else(|| vec![1.0; values.len()]);
+    if weights.len() != values.len() {
+        return Err(MarginalError::Weights { values: values.len(), weights: weights.len() });
+    }
+    Ok(values.iter().zip(weights).flat_map(|(value, weight)| [("value", *value), ("weight", weight)]).collect())
+}
+
+/// Keys that measured values alone have, and that are given.
+fn of_data(input: &raw::Input) -> impl Iterator<Item = &'static str> {
+    let keys =
+        [("file", input.file.is_some()), ("column", input.column.is_some()), ("smoothing", input.smoothing.is_some())];
+    keys.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name)
 }
 
 #[cfg(test)]

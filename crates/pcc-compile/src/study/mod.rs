@@ -7,6 +7,7 @@ mod file;
 mod fit;
 mod identity;
 mod inputs;
+mod measured;
 mod model;
 mod print;
 mod raw;
@@ -19,6 +20,7 @@ mod validate;
 pub use dependence::{DependenceError, DependenceSettings, Measure};
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
+pub use measured::TableError;
 pub use model::{Command, ModelSettings, Table};
 #[cfg(feature = "schema")]
 pub use schema::schema;

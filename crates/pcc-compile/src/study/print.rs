@@ -8,6 +8,7 @@ use super::{DependenceSettings, DesignKind, Measure, STUDY_FORMAT, Study};
 use crate::fitting::fit::method::{Design, MethodSetting, Value};
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;
+use pcc_evaluate::probability::inputs::{Marginal, Source};
 
 /// Column at which explanations start.
 const COMMENT_COLUMN: usize = 34;
@@ -108,8 +109,7 @@ fn fit(file: &mut Printer, study: &Study) {
 fn inputs(file: &mut Printer, study: &Study) {
     file.table("inputs");
     for input in study.inputs.inputs() {
-        let parameters: String =
-            input.marginal.parameters().into_iter().map(|(key, value)| format!(", {key} = {}", float(value))).collect();
+        let parameters = parameters(&input.marginal);
         let description = &input.description;
         let given = [("unit", description.unit()), ("label", description.label())];
         let texts: String =
@@ -135,6 +135,25 @@ fn dependence(file: &mut Printer, study: &Study) {
         Measure::Pearson => "correlations of values",
     };
     file.line(measure.name(), format!("[{}]", pairs.iter().map(pair).collect::<Vec<_>>().join(", ")), explanation);
+}
+
+/// The parameters of a law as they are given.
+fn parameters(law: &Marginal) -> String {
+    let list = |wanted: &str| {
+        let values = law.parameters().into_iter().filter(|(name, _)| *name == wanted);
+        values.map(|(_, value)| float(value)).collect::<Vec<_>>().join(", ")
+    };
+    let number = |(key, value): (&str, f64)| format!(", {key} = {}", float(value));
+    match law.source() {
+        Some(Source { file, column }) => {
+            let column = column.as_ref().map(|column| format!(", column = {}", text(column))).unwrap_or_default();
+            let smoothing = if law.is_discrete() { ", smoothing = \"none\"" } else { "" };
+            let bounds = law.parameters().into_iter().filter(|(name, _)| ["lower", "upper"].contains(name));
+            format!(", file = {}{column}{smoothing}{}", text(file), bounds.map(number).collect::<String>())
+        }
+        None if law.is_discrete() => format!(", values = [{}], weights = [{}]", list("value"), list("weight")),
+        None => law.parameters().into_iter().map(number).collect(),
+    }
 }
 
 /// A text in quotes, as TOML writes it.

@@ -280,6 +280,17 @@ struct Input {
     beta: Option<f64>,
     /// Likeliest value. Of: triangular.
     mode: Option<f64>,
+    /// The values that it takes. Of: discrete.
+    #[schemars(length(min = 2))]
+    values: Option<Vec<f64>>,
+    /// How often it takes each, relative to the others. Default: equally often. Of: discrete.
+    weights: Option<Vec<f64>>,
+    /// A table of measured values (CSV), in the folder of the study. Of: data.
+    file: Option<String>,
+    /// The column of the table. Default: its only one. Of: data.
+    column: Option<String>,
+    /// Whether every measured value stands for others near it. Default: kernel. Of: data.
+    smoothing: Option<Smoothing>,
     /// Which polynomials expansions have. Default: own, but for inputs over orders of magnitude. Of: lognormal, gamma,
     /// beta, triangular, exponential, weibull, gumbel; normal where it is cut off.
     polynomials: Option<Polynomials>,
@@ -296,6 +307,15 @@ enum Relative {
     Number(f64),
     /// A text in percent like "5%".
     Percent(String),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "kebab-case")]
+enum Smoothing {
+    /// Normal kernels, whose width follows from the number of values; mean and standard deviation stay.
+    Kernel,
+    /// Nothing but the measured values is drawn.
+    None,
 }
 
 #[derive(JsonSchema)]
@@ -331,6 +351,10 @@ enum Distribution {
     Weibull,
     /// Gumbel, of largest values: location and scale, or mean and std.
     Gumbel,
+    /// Single values: values, and weights if they are not equally frequent.
+    Discrete,
+    /// Measured values: file, and column if the file has several. Lower or upper or both cut it off.
+    Data,
 }
 
 /// What of the spectrum is expanded, and what stable means.

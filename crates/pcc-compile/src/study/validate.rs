@@ -48,7 +48,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     let kind = lines.kind(&raw.model.kind)?;
     let places: Vec<Place> =
         raw.inputs.get_ref().0.iter().map(|(key, raw)| lines.place(format!("inputs.{key}"), raw)).collect();
-    let inputs = lines.inputs(raw.inputs, kind)?;
+    let inputs = lines.inputs(raw.inputs, kind, folder)?;
     let (dependence, inputs) = match &raw.dependence {
         Some(raw) => lines.dependence(raw, inputs)?,
         None => (None, inputs),

@@ -69,6 +69,9 @@ impl OwnPolynomials {
     }
 }
 
+/// A polynomial with a smaller share of the first one's standard deviation is zero but for rounding.
+const VANISHED: f64 = 1e-9;
+
 fn stieltjes(nodes: &[f64], weights: &[f64], degree: usize) -> Recurrence {
     let (mut diagonal, mut off_diagonal) = (Vec::with_capacity(degree), Vec::with_capacity(degree));
     let (mut before, mut current) = (vec![0.0; nodes.len()], vec![1.0; nodes.len()]);
@@ -79,8 +82,10 @@ fn stieltjes(nodes: &[f64], weights: &[f64], degree: usize) -> Recurrence {
             *before = (x - mean) * value - coupling * *before;
         }
         let next: f64 = before.iter().zip(weights).map(|(next, w)| w * next * next).sum::<f64>().sqrt();
-        // As many nodes as degrees: there are no more polynomials, and none is asked for.
-        coupling = if next.is_normal() { next } else { 1.0 };
+        // Beyond the degree at which a polynomial vanishes at all nodes there is none of unit variance: what follows
+        // vanishes there, too.
+        let least = off_diagonal.first().map_or(0.0, |first| VANISHED * first);
+        coupling = if next.is_normal() && next > least { next } else { off_diagonal.first().copied().unwrap_or(1.0) };
         before.iter_mut().for_each(|next| *next /= coupling);
         std::mem::swap(&mut before, &mut current);
         diagonal.push(mean);

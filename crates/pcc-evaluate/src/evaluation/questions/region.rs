@@ -3,7 +3,7 @@
 use super::question::Question;
 use super::survey_error::SurveyError;
 use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
-use crate::probability::inputs::{Confinement, Conflict, Correlated, Germ, InputSpace, OUTERMOST};
+use crate::probability::inputs::{Confinement, Conflict, Correlated, Germ, InputSpace, Marginal, OUTERMOST};
 
 /// Replicates of all points of all sweeps together, at most: their counts are kept in memory, some 500 bytes each.
 const MOST_SERIES: u64 = 1 << 18;
@@ -159,12 +159,11 @@ impl Regions {
         let mut base = vec![Confinement::NONE; inputs.dimension()];
         for condition in &question.conditions {
             let input = position(&condition.input)?;
-            let lower = coordinate(inputs, input, condition.lower)?;
-            let upper = coordinate(inputs, input, condition.upper)?;
             if condition.lower > condition.upper {
+                inside(inputs, input, condition.lower).and_then(|_| inside(inputs, input, condition.upper))?;
                 return Err(SurveyError::Inverted { condition: condition.clone() });
             }
-            base[input] = Confinement { lower, width: upper - lower };
+            base[input] = confinement(inputs, input, [condition.lower, condition.upper])?;
         }
         let mut series = u64::from(question.replicates.max(1));
         let mut swept = Vec::with_capacity(question.sweeps.len());
@@ -222,16 +221,42 @@ impl Regions {
     }
 }
 
-/// The centred probability of a value inside the domain.
-fn coordinate(inputs: &InputSpace, input: usize, value: f64) -> Result<f64, SurveyError> {
+/// The law of an input, if a value lies in its support.
+fn inside(inputs: &InputSpace, input: usize, value: f64) -> Result<&Marginal, SurveyError> {
     let chosen = &inputs.inputs()[input];
-    if !chosen.marginal.contains(value) {
-        let [lower, upper] = chosen.marginal.support();
-        return Err(SurveyError::Outside { input: chosen.name.clone(), value, lower, upper });
+    if chosen.marginal.contains(value) {
+        return Ok(&chosen.marginal);
     }
-    // No farther out than random values come.
-    let most = if chosen.marginal.is_divisible() { 1.0 } else { OUTERMOST };
-    Ok(chosen.marginal.centred_probability(value).clamp(-most, most))
+    let [lower, upper] = chosen.marginal.support();
+    Err(SurveyError::Outside { input: chosen.name.clone(), value, lower, upper })
+}
+
+/// What a condition leaves of an input.
+fn confinement(inputs: &InputSpace, input: usize, [lower, upper]: [f64; 2]) -> Result<Confinement, SurveyError> {
+    if lower == upper {
+        return Ok(Confinement { lower: coordinate(inputs, input, lower)?, width: 0.0 });
+    }
+    let law = inside(inputs, input, lower).and_then(|_| inside(inputs, input, upper))?;
+    let [from, to] = law.centred_interval([lower, upper]).map(|centred| outermost(law, centred));
+    match law.is_discrete() && from >= to {
+        true => Err(SurveyError::NoLevel { input: inputs.inputs()[input].name.clone(), values: [lower, upper] }),
+        false => Ok(Confinement { lower: from, width: to - from }),
+    }
+}
+
+/// The centred probability of a value that the input can take.
+fn coordinate(inputs: &InputSpace, input: usize, value: f64) -> Result<f64, SurveyError> {
+    let law = inside(inputs, input, value)?;
+    match law.takes(value) {
+        true => Ok(outermost(law, law.centred_probability(value))),
+        false => Err(SurveyError::NoLevel { input: inputs.inputs()[input].name.clone(), values: [value; 2] }),
+    }
+}
+
+/// No farther out than random values come.
+fn outermost(law: &Marginal, centred: f64) -> f64 {
+    let most = if law.is_divisible() { 1.0 } else { OUTERMOST };
+    centred.clamp(-most, most)
 }
 
 #[cfg(test)]
@@ -242,7 +267,7 @@ mod tests {
     use crate::evaluation::test_surrogates::inputs;
     use crate::foundation::InstructionSet;
     use crate::probability::dependence::GaussianCopula;
-    use crate::probability::inputs::{Input, Marginal, Parameters, random_point};
+    use crate::probability::inputs::{Input, Parameters, random_point};
     use crate::probability::random::Purpose;
 
     /// Laws of all kinds, correlated but for the third.

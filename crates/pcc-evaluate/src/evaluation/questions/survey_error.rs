@@ -116,6 +116,14 @@ pub enum SurveyError {
         /// Upper bound of the domain.
         upper: f64,
     },
+    /// Values between those that an input can take.
+    #[error("{input} takes single values, and none of {:?} to {:?}; `pcc inspect` lists them", values[0], values[1])]
+    NoLevel {
+        /// Name of the input.
+        input: String,
+        /// From where to where.
+        values: [f64; 2],
+    },
     /// An interval upside down.
     #[error("{}={:?}..{:?}: the lower bound comes first; swap them", condition.input, condition.lower, condition.upper)]
     Inverted {

@@ -119,7 +119,7 @@ impl Germ {
 }
 
 /// 2Φ(z) − 1. The smaller tail keeps its digits.
-fn centred_probability_of_score(z: f64) -> f64 {
+pub(super) fn centred_probability_of_score(z: f64) -> f64 {
     if z > 0.0 { 1.0 - 2.0 * distribution(-z) } else { 2.0 * distribution(z) - 1.0 }
 }
 

@@ -32,10 +32,29 @@ pub(super) trait Law: Debug + Send + Sync {
     /// The same map as files keep it.
     fn transform(&self) -> Transform<'_>;
 
+    /// Whether it takes single values.
+    fn is_discrete(&self) -> bool {
+        false
+    }
+
+    /// Where its values were read, if they were.
+    fn source(&self) -> Option<&Source> {
+        None
+    }
+
     /// The polynomials that a study has asked for, if there was a choice.
     fn chosen(&self) -> Option<Polynomials> {
         None
     }
+}
+
+/// A column of a table of measured values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// The file, as the study names it.
+    pub file: String,
+    /// The column's name, if the study gives one.
+    pub column: Option<String>,
 }
 
 /// A map from the standardized variable, or from the normal score, to the input's value.

@@ -1,7 +1,7 @@
 //! The law of one input, whichever it is, and its map to the standardized variable of its polynomial family.
 
-use super::germ::Germ;
-use super::law::{Law, Transform};
+use super::germ::{Germ, centred_probability_of_score};
+use super::law::{Law, Source, Transform};
 use super::uniform::Uniform;
 use crate::polynomials::Family;
 use std::sync::Arc;
@@ -87,6 +87,16 @@ impl Marginal {
         self.law().parameters()
     }
 
+    /// Whether it takes single values.
+    pub fn is_discrete(&self) -> bool {
+        self.law().is_discrete()
+    }
+
+    /// Where its values were read, if they were measured and it was made from them.
+    pub fn source(&self) -> Option<&Source> {
+        self.law().source()
+    }
+
     /// The polynomials that were asked for, if there was a choice.
     pub fn chosen_polynomials(&self) -> Option<Polynomials> {
         self.law().chosen()
@@ -150,6 +160,25 @@ impl Marginal {
     /// η = 2F(x) − 1 ∈ [−1, 1] at a physical value, F being its distribution function: random values are uniform in it.
     pub fn centred_probability(&self, physical: f64) -> f64 {
         self.germ().centred_probability(self.standardized(physical))
+    }
+
+    /// η at the ends of an interval of values, in which all of its probability lies: of single values too.
+    pub fn centred_interval(&self, [lower, upper]: [f64; 2]) -> [f64; 2] {
+        match self.transform() {
+            Transform::Pieces { origin, scale, quantile } if self.is_discrete() => {
+                let ends = [lower, upper].map(|x| (x - origin) / scale);
+                quantile.scores_of_levels(ends).map(centred_probability_of_score)
+            }
+            _ => [lower, upper].map(|x| self.centred_probability(x)),
+        }
+    }
+
+    /// Whether it can take a value inside its support: a law of single values takes its levels alone.
+    pub fn takes(&self, physical: f64) -> bool {
+        const ROUNDING: f64 = 1e-9;
+        let [lower, upper] = self.support();
+        let nearest = || self.at_centred_probability(self.centred_probability(physical));
+        !self.is_discrete() || (nearest() - physical).abs() <= ROUNDING * (upper - lower)
     }
 
     /// The physical value where 2F(x) − 1 is η ∈ (−1, 1).

@@ -87,9 +87,8 @@ pub fn scores_of_pearson(one: &Marginal, other: &Marginal, pearson: f64) -> Resu
 
 /// Whether the correlation is that of the scores: the inputs are affine functions of them.
 fn are_normal(one: &Marginal, other: &Marginal) -> bool {
-    let is_normal = |law: &Marginal| {
-        matches!(law.germ(), Germ::Normal) && matches!(law.transform(), Transform::Affine { .. })
-    };
+    let is_normal =
+        |law: &Marginal| matches!(law.germ(), Germ::Normal) && matches!(law.transform(), Transform::Affine { .. });
     is_normal(one) && is_normal(other)
 }
 

@@ -3,15 +3,14 @@
 use super::beta::beta;
 use super::extremes::{exponential, gumbel, gumbel_with_moments, weibull};
 use super::gamma::gamma;
+use super::levels::{Levels, discrete};
 use super::log_uniform::LogUniform;
 use super::lognormal::LogNormal;
 use super::marginal::{Marginal, Polynomials};
 use super::normal::Normal;
-use super::pieces::Pieces;
-use super::shaped::Draft;
+use super::shaped::{self, Draft, Stored};
 use super::triangular::triangular;
 use super::uniform::{MarginalError, Uniform};
-use crate::polynomials::Recurrence;
 
 /// Parameters of a law, with their names in study files, and the polynomials that are asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +23,7 @@ pub struct Parameters<'a> {
 enum Made {
     Finished(Marginal),
     Draft(Draft),
+    Levels(Levels),
 }
 
 type Making = Result<Made, MarginalError>;
@@ -32,7 +32,7 @@ type Making = Result<Made, MarginalError>;
 type Known = (&'static str, &'static str, fn(&Parameters<'_>) -> Option<Making>);
 
 /// All laws, in the order in which they are listed.
-const LAWS: [Known; 10] = [
+const LAWS: [Known; 12] = [
     ("uniform", "lower and upper, or nominal and spread", uniform),
     ("normal", "mean and std, mean and cv, or nominal and cv; lower or upper or both cut it off", normal),
     ("lognormal", "mean and std, mean and cv, or median and cv, of the variable itself", lognormal),
@@ -64,19 +64,15 @@ const LAWS: [Known; 10] = [
         };
         Some(law.map(Made::Draft))
     }),
+    ("discrete", "values, and weights if these are not equal", |given| {
+        let of = |name| given.numbers.iter().filter(move |(known, _)| *known == name).map(|(_, value)| *value);
+        let (values, weights): (Vec<f64>, Vec<f64>) = (of("value").collect(), of("weight").collect());
+        let is_it = !values.is_empty() && values.len() == weights.len() && given.numbers.len() == 2 * values.len();
+        is_it.then(|| discrete(&values, &weights).map(Made::Levels))
+    }),
+    // Of values that are measured: `Marginal::measured`.
+    ("data", "file, and column if the file has several; lower or upper or both cut it off", |_| None),
 ];
-
-/// A law as files keep it that were made from its density.
-pub(crate) struct Stored {
-    /// x = origin + scale q(z).
-    pub map: [f64; 2],
-    /// q, z being the normal score.
-    pub quantile: Pieces,
-    /// Of which variable the polynomials are.
-    pub polynomials: Polynomials,
-    /// Their recurrence.
-    pub recurrence: Recurrence,
-}
 
 impl<'a> Parameters<'a> {
     /// These names with these values.
@@ -146,6 +142,7 @@ impl Marginal {
         let marginal = match made {
             Made::Finished(marginal) => marginal,
             Made::Draft(draft) => draft.law(given.polynomials)?,
+            Made::Levels(levels) => Marginal::of(levels),
         };
         match given.polynomials.is_some() && marginal.chosen_polynomials().is_none() {
             true => Err(MarginalError::NoChoice { law }),
@@ -159,13 +156,14 @@ impl Marginal {
     ///
     /// A sentence: no such law, or not its map.
     pub(crate) fn stored(name: &str, given: &Parameters<'_>, stored: Stored) -> Result<Self, String> {
+        if name == "data" {
+            return of_data(given, stored).map_err(str::to_owned);
+        }
         let given = given.clone().with_polynomials(Some(stored.polynomials));
         match made(name, &given).map_err(|error| error.to_string())? {
             (law, Made::Finished(_)) => Err(format!("a {law} law has no pieces")),
-            (_, Made::Draft(draft)) => {
-                let Stored { map, quantile, polynomials, recurrence } = stored;
-                draft.stored(map, quantile, polynomials, recurrence).map_err(str::to_owned)
-            }
+            (_, Made::Levels(levels)) => levels.stored(stored).map(Self::of).map_err(str::to_owned),
+            (_, Made::Draft(draft)) => draft.stored(stored).map_err(str::to_owned),
         }
     }
 }
@@ -177,6 +175,24 @@ fn made(name: &str, given: &Parameters<'_>) -> Result<(&'static str, Made), Marg
     };
     let made = make(given).unwrap_or(Err(MarginalError::Form { law, expected }))?;
     Ok((law, made))
+}
+
+/// A law of measured values, which are not in the file.
+fn of_data(given: &Parameters<'_>, stored: Stored) -> Result<Marginal, &'static str> {
+    const KNOWN: [&str; 6] = ["count", "mean", "std", "least", "largest", "bandwidth"];
+    let names: Vec<&str> = given.numbers.iter().map(|(name, _)| *name).collect();
+    let bounds: Vec<&str> = ["lower", "upper"].into_iter().filter(|name| given.get(name).is_some()).collect();
+    let value = |name| given.get(name).unwrap_or(f64::NAN);
+    if names != [&KNOWN[..], &bounds].concat() || !(value("least") < value("largest") && value("bandwidth") >= 0.0) {
+        return Err("its parameters are not those of measured values");
+    }
+    let parameters = KNOWN.into_iter().chain(bounds).map(|name| (name, value(name))).collect();
+    let [lower, upper] = [("lower", f64::NEG_INFINITY), ("upper", f64::INFINITY)]
+        .map(|(name, unbounded)| given.get(name).unwrap_or(unbounded));
+    match value("bandwidth") == 0.0 {
+        true => Levels::of_file("data", parameters, [value("least"), value("largest")], stored).map(Marginal::of),
+        false => shaped::of_file("data", parameters, [lower, upper], "own", stored),
+    }
 }
 
 fn uniform(given: &Parameters<'_>) -> Option<Making> {

@@ -84,11 +84,43 @@ impl Pieces {
         }
         let mut pieces = Vec::with_capacity(coefficients.len());
         for (ends, coefficients) in breaks.windows(2).zip(coefficients) {
-            let coefficients = coefficients.as_slice().try_into().map_err(|_| "a piece has not 13 coefficients")?;
+            let coefficients = match coefficients[..] {
+                [constant] => std::array::from_fn(|k| if k == 0 { constant } else { 0.0 }),
+                ref all => all.try_into().map_err(|_| "a piece has not 1 or 13 coefficients")?,
+            };
             pieces.push(Piece::new([ends[0], ends[1]], coefficients));
         }
         let pieces = Self::with_cells(pieces);
         if pieces.is_rising() { Ok(pieces) } else { Err("its pieces are not finite and rising") }
+    }
+
+    /// Steps: `values` in ascending order, one giving way to the next at these normal scores.
+    pub fn steps(values: &[f64], scores: &[f64]) -> Self {
+        let (mut pieces, mut start) = (Vec::with_capacity(values.len()), -REACH);
+        for (value, end) in values.iter().zip(scores.iter().copied().chain([REACH])) {
+            // What is rarer than any random number has no piece.
+            if end > start {
+                let mut coefficients = [0.0; DEGREE + 1];
+                coefficients[0] = *value;
+                pieces.push(Piece::new([start, end], coefficients));
+                start = end;
+            }
+        }
+        Self::with_cells(pieces)
+    }
+
+    /// Whether all pieces are constant.
+    pub fn are_steps(&self) -> bool {
+        self.pieces.iter().all(|piece| piece.coefficients[1..] == [0.0; DEGREE])
+    }
+
+    /// The normal scores at which the first of the steps in an interval of values begins, and the last one ends.
+    pub fn scores_of_levels(&self, [lower, upper]: [f64; 2]) -> [f64; 2] {
+        /// Of a standard deviation: levels that are typed are not always the same to the last digit.
+        const ROUNDING: f64 = 1e-9;
+        let before = |value: f64| self.pieces.partition_point(|piece| piece.coefficients[0] < value);
+        let end = |at: usize| at.checked_sub(1).map_or(-REACH, |last| self.pieces[last].end);
+        [end(before(lower - ROUNDING)), end(before(upper + ROUNDING))]
     }
 
     fn with_cells(pieces: Vec<Piece>) -> Self {
@@ -102,9 +134,12 @@ impl Pieces {
         std::iter::once(-REACH).chain(self.pieces.iter().map(|piece| piece.end)).collect()
     }
 
-    /// Coefficients of each piece, of t ∈ \[−1, 1\], constant first.
+    /// Coefficients of each piece, of t ∈ \[−1, 1\], constant first; of a step that alone.
     pub fn coefficients(&self) -> impl Iterator<Item = &[f64]> {
-        self.pieces.iter().map(|piece| piece.coefficients.as_slice())
+        self.pieces.iter().map(|piece| match piece.coefficients.split_first() {
+            Some((_, [0.0, rest @ ..])) if rest.iter().all(|c| *c == 0.0) => &piece.coefficients[..1],
+            _ => piece.coefficients.as_slice(),
+        })
     }
 
     /// The value at a normal score.
@@ -124,6 +159,9 @@ impl Pieces {
     pub fn score(&self, value: f64) -> f64 {
         let at = self.pieces.partition_point(|piece| piece.value(piece.end) < value).min(self.pieces.len() - 1);
         let piece = &self.pieces[at];
+        if piece.coefficients[1..] == [0.0; DEGREE] {
+            return piece.center;
+        }
         let start = 2.0f64.mul_add(piece.center, -piece.end);
         root::rising(|z| piece.value(z) - value, |z| piece.slope(z), [start, piece.end])
     }

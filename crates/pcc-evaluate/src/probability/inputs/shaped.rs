@@ -2,7 +2,7 @@
 
 use super::density::{Density, Integrated, Place};
 use super::germ::Germ;
-use super::law::{Law, Transform};
+use super::law::{Law, Source, Transform};
 use super::marginal::{Marginal, Polynomials};
 use super::normal_quantile::distribution;
 use super::own_variable::OwnVariable;
@@ -25,6 +25,18 @@ pub(super) struct Draft {
     pub default: Polynomials,
 }
 
+/// A law as files keep it that were made from its density.
+pub(crate) struct Stored {
+    /// x = origin + scale q(z).
+    pub map: [f64; 2],
+    /// q, z being the normal score.
+    pub quantile: Pieces,
+    /// Of which variable the polynomials are.
+    pub polynomials: Polynomials,
+    /// Their recurrence.
+    pub recurrence: Recurrence,
+}
+
 /// x = origin + scale q(z), q being its quantile as a function of the normal score.
 #[derive(Debug)]
 struct Shaped {
@@ -37,6 +49,7 @@ struct Shaped {
     /// ξ = q, or ξ = z.
     germ: Germ,
     chosen: Option<Polynomials>,
+    source: Option<Source>,
 }
 
 /// The largest |F(q(z)) − Φ(z)| of what is stored, but for the rounding of q.
@@ -49,6 +62,19 @@ impl Draft {
     ///
     /// [`MarginalError::Shape`] if its quantiles cannot be resolved in double precision.
     pub fn law(self, chosen: Option<Polynomials>) -> Result<Marginal, MarginalError> {
+        self.shaped(chosen).map(Marginal::of)
+    }
+
+    /// The law of values that were read there.
+    ///
+    /// # Errors
+    ///
+    /// As [`Draft::law`].
+    pub fn measured(self, chosen: Option<Polynomials>, source: Option<Source>) -> Result<Marginal, MarginalError> {
+        Ok(Marginal::of(Shaped { source, ..self.shaped(chosen)? }))
+    }
+
+    fn shaped(self, chosen: Option<Polynomials>) -> Result<Shaped, MarginalError> {
         let unresolved = || MarginalError::Shape { law: self.name };
         let integrated = Integrated::new(&*self.density).ok_or_else(unresolved)?;
         let [mean, scale] = integrated.moments();
@@ -61,23 +87,17 @@ impl Draft {
         };
         let origin = support.into_iter().find(|end| end.is_finite()).unwrap_or(mean);
         let quantile = Pieces::of(|z| standard(integrated.at_score(z)), &integrated.scores_of_kinks());
-        let is_resolved = (-32..=32).all(|k| {
-            let z = f64::from(k) / 4.0;
-            let x = scale.mul_add(quantile.at(z), origin);
-            // Where a density is infinite, the rounding of a value alone can be more.
-            let rounding = TOLERANCE * (x - origin).abs() + 4.0 * f64::EPSILON * (x.abs() + origin.abs());
-            let [less, more] = [x - rounding, x + rounding].map(|x| integrated.probabilities(x));
-            let [below, above] = [distribution(z), distribution(-z)];
-            (less[0] - RESOLUTION <= below && below <= more[0] + RESOLUTION)
-                || (more[1] - RESOLUTION <= above && above <= less[1] + RESOLUTION)
-        });
-        if !is_resolved {
+        if !is_resolved(&integrated, [origin, scale], &quantile) {
             return Err(unresolved());
         }
         let (places, weights) = integrated.rule();
         let nodes = places.into_iter().map(standard).collect();
         let polynomials = OwnPolynomials::of_density(self.family, nodes, weights);
-        Ok(self.with(origin, scale, quantile, polynomials, chosen))
+        let basis = chosen.unwrap_or(self.default);
+        Ok(Shaped {
+            chosen,
+            ..Shaped::new(self.name, self.parameters, support, [origin, scale], quantile, basis, polynomials)
+        })
     }
 
     /// The law as a file has it.
@@ -85,37 +105,45 @@ impl Draft {
     /// # Errors
     ///
     /// A sentence, if the map is not that of the density.
-    pub fn stored(
-        self,
-        [origin, scale]: [f64; 2],
-        quantile: Pieces,
-        polynomials: Polynomials,
-        recurrence: Recurrence,
-    ) -> Result<Marginal, &'static str> {
-        if !(origin.is_finite() && scale.is_finite() && scale > 0.0) {
-            return Err("its map has no finite origin and positive scale");
-        }
-        if !is_quantile_of(&*self.density, [origin, scale], &quantile) {
+    pub fn stored(self, stored: Stored) -> Result<Marginal, &'static str> {
+        if !is_quantile_of(&*self.density, stored.map, &stored.quantile) {
             return Err("its pieces are not the quantiles of its law");
         }
-        let own = OwnPolynomials::stored(self.family, recurrence);
-        if polynomials == Polynomials::Own && !are_polynomials_of(&own, &quantile) {
-            return Err("its recurrence is not that of its law");
-        }
-        Ok(self.with(origin, scale, quantile, own, Some(polynomials)))
+        of_file(self.name, self.parameters, self.density.support(), self.family, stored)
     }
+}
 
-    fn with(
-        self,
-        origin: f64,
-        scale: f64,
+/// A law of which a file has all that is known; a sentence if there is none.
+pub(super) fn of_file(
+    name: &'static str,
+    parameters: Vec<(&'static str, f64)>,
+    support: [f64; 2],
+    family: &'static str,
+    Stored { map: [origin, scale], quantile, polynomials, recurrence }: Stored,
+) -> Result<Marginal, &'static str> {
+    if !(origin.is_finite() && scale.is_normal() && scale > 0.0) {
+        return Err("its map has no finite origin and positive scale");
+    }
+    let own = OwnPolynomials::stored(family, recurrence);
+    if polynomials == Polynomials::Own && !are_polynomials_of(&own, &quantile) {
+        return Err("its recurrence is not that of its law");
+    }
+    let law = Shaped::new(name, parameters, support, [origin, scale], quantile, polynomials, own);
+    Ok(Marginal::of(Shaped { chosen: Some(polynomials), ..law }))
+}
+
+impl Shaped {
+    fn new(
+        name: &'static str,
+        parameters: Vec<(&'static str, f64)>,
+        support: [f64; 2],
+        [origin, scale]: [f64; 2],
         quantile: Pieces,
+        basis: Polynomials,
         polynomials: OwnPolynomials,
-        chosen: Option<Polynomials>,
-    ) -> Marginal {
+    ) -> Self {
         let quantile = Arc::new(quantile);
-        let support = self.density.support();
-        let germ = match chosen.unwrap_or(self.default) {
+        let germ = match basis {
             Polynomials::Hermite => Germ::Normal,
             Polynomials::Own => Germ::Own(Arc::new(OwnVariable {
                 quantile: quantile.clone(),
@@ -123,9 +151,27 @@ impl Draft {
                 is_bounded: support.map(f64::is_finite),
             })),
         };
-        let Self { name, parameters, .. } = self;
-        Marginal::of(Shaped { name, parameters, support, origin, scale, quantile, germ, chosen })
+        Self { name, parameters, support, origin, scale, quantile, germ, chosen: None, source: None }
     }
+
+    /// Whether ξ is the normal score.
+    fn is_of_score(&self) -> bool {
+        matches!(self.germ, Germ::Normal)
+    }
+}
+
+/// Whether F(x(z)) is Φ(z).
+fn is_resolved(integrated: &Integrated<'_>, [origin, scale]: [f64; 2], quantile: &Pieces) -> bool {
+    (-32..=32).all(|k| {
+        let z = f64::from(k) / 4.0;
+        let x = scale.mul_add(quantile.at(z), origin);
+        // Where a density is infinite, the rounding of a value alone can be more.
+        let rounding = TOLERANCE * (x - origin).abs() + 4.0 * f64::EPSILON * (x.abs() + origin.abs());
+        let [less, more] = [x - rounding, x + rounding].map(|x| integrated.probabilities(x));
+        let [below, above] = [distribution(z), distribution(-z)];
+        (less[0] - RESOLUTION <= below && below <= more[0] + RESOLUTION)
+            || (more[1] - RESOLUTION <= above && above <= less[1] + RESOLUTION)
+    })
 }
 
 /// Whether ln f(x(z)) + ln x′(z) + z²/2 is constant, as it is where x(z) gives normal variables the density f.
@@ -147,7 +193,7 @@ fn is_quantile_of(density: &dyn Density, [origin, scale]: [f64; 2], quantile: &P
 }
 
 /// Whether the first coefficients are those of the variable q(z), and the others can be.
-fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
+pub(super) fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
     /// By the trapezoidal rule, which kinks make worse and which ends where the pieces do.
     const TOLERANCE: f64 = 1e-2;
     const CHECKED: usize = 3;
@@ -162,13 +208,6 @@ fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
         && close(&off_diagonal, &expected.off_diagonal)
         && diagonal.iter().all(|a| a.is_finite())
         && off_diagonal.iter().all(|b| b.is_normal() && *b > 0.0)
-}
-
-impl Shaped {
-    /// Whether ξ is the normal score.
-    fn is_of_score(&self) -> bool {
-        matches!(self.germ, Germ::Normal)
-    }
 }
 
 impl Law for Shaped {
@@ -204,6 +243,10 @@ impl Law for Shaped {
 
     fn transform(&self) -> Transform<'_> {
         Transform::Pieces { origin: self.origin, scale: self.scale, quantile: &self.quantile }
+    }
+
+    fn source(&self) -> Option<&Source> {
+        self.source.as_ref()
     }
 
     fn chosen(&self) -> Option<Polynomials> {

@@ -63,6 +63,39 @@ pub enum MarginalError {
         /// The coefficient.
         cv: f64,
     },
+    /// Values without weights of their own.
+    #[error("there are {values} values and {weights} weights; give one for each, or none")]
+    Weights {
+        /// Number of values.
+        values: usize,
+        /// Number of weights.
+        weights: usize,
+    },
+    /// Levels that do not differ.
+    #[error("all values are equal; an uncertain input has at least two that differ, and a certain one is a constant")]
+    OneLevel,
+    /// Too many single values.
+    #[error("there are {found} different values, more than {most}; smooth them, or give their law")]
+    Levels {
+        /// What was found.
+        found: usize,
+        /// Most of them.
+        most: usize,
+    },
+    /// Too few measured values.
+    #[error("there are {found} values, but a law takes at least {least}; give a law with its parameters")]
+    FewValues {
+        /// What was found.
+        found: usize,
+        /// Least of them.
+        least: usize,
+    },
+    /// A measured value beyond the bounds of its law.
+    #[error("{value} was measured, but lies beyond lower or upper; move the bound or remove the value")]
+    BeyondBounds {
+        /// The value.
+        value: f64,
+    },
     /// A law has one kind of polynomials.
     #[error("a {law} law leaves no choice of polynomials; remove the key")]
     NoChoice {

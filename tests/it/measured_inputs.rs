@@ -1,0 +1,154 @@
+//! Inputs of single levels and of measured values: shares against sums over them, files, and what is refused.
+
+use crate::laws::{built_from, folder_with, json, number, oscillator};
+use crate::support::command::{output, refusal};
+use crate::support::in_one_line;
+use pcc_compile::study::Study;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const LEVELS: &str = "\"discrete\", values = [1.5, 0.5, 1.0], weights = [1.0, 1.0, 2.0]";
+
+fn stable_share(folder: &Path, more: &[&str]) -> f64 {
+    number(&json(folder, &[&["eval", "built.pcc", "-n", "200000"], more].concat()), "/stable_proportion")
+}
+
+/// Within 4.5 standard errors of what is expected.
+#[track_caller]
+fn assert_share(found: f64, expected: f64) {
+    let error = (expected * (1.0 - expected) / 2e5).sqrt();
+    assert!((found - expected).abs() <= 4.5 * error, "{found} for {expected}");
+}
+
+#[test]
+fn levels_come_as_often_as_they_should() {
+    let folder = built_from(&oscillator(&[("x", LEVELS)], 1.1, ""));
+    assert_share(stable_share(folder.path(), &[]), 0.75);
+    assert_share(stable_share(folder.path(), &["--where", "x=1..1.5"]), 2.0 / 3.0);
+    assert_share(stable_share(folder.path(), &["--where", "x=0.9..1.1"]), 1.0);
+    assert_share(stable_share(folder.path(), &["--where", "x=1.5"]), 0.0);
+    for between in ["x=1.2", "x=1.1..1.4"] {
+        let message = in_one_line(&refusal(folder.path(), &["eval", "built.pcc", "-n", "10", "--where", between]));
+        assert!(message.contains("x takes single values"), "{message}");
+    }
+}
+
+/// With a second input that the levels divide: Σ w Φ((1.1 − x)/0.2).
+#[test]
+fn levels_and_other_inputs_are_judged_together() {
+    let folder = built_from(&oscillator(&[("x", LEVELS), ("y", "\"normal\", mean = 0.0, std = 0.2")], 1.1, ""));
+    // From scipy.stats.norm.cdf at 3, 0.5 and −2, weighted by 1, 2 and 1.
+    assert_share(
+        stable_share(folder.path(), &[]),
+        0.25 * 0.998650101968 + 0.5 * 0.691462461274 + 0.25 * 0.022750131948,
+    );
+    let report = json(folder.path(), &["eval", "built.pcc", "-n", "200000"]);
+    // Variances 0.125 and 0.04.
+    let first = number(&report, "/sensitivity/inputs/0/max_re/first/value");
+    assert!((first - 0.125 / 0.165).abs() < 0.01, "{first}");
+}
+
+/// Values between 0.6 and 1.6, more at the lower end.
+fn values() -> Vec<f64> {
+    (0..40).map(|k| 0.6 + (f64::from(k) / 39.0).powi(2)).collect()
+}
+
+fn measured(keys: &str) -> (TempDir, String) {
+    let study = oscillator(&[("x", &format!("\"data\", file = \"measured.csv\"{keys}"))], 1.1, "");
+    let folder = folder_with(&study);
+    let rows: String = values().iter().enumerate().map(|(at, value)| format!("{at},{value:?}\n")).collect();
+    fs::write(folder.path().join("measured.csv"), format!("part,x\n{rows}")).unwrap();
+    (folder, study)
+}
+
+fn built_from_measured(keys: &str) -> (TempDir, String) {
+    let (folder, study) = measured(keys);
+    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
+    (folder, study)
+}
+
+#[test]
+fn measured_values_are_drawn_as_they_are() {
+    let (folder, _) = built_from_measured(", column = \"x\", smoothing = \"none\"");
+    let below = values().iter().filter(|value| **value < 1.1).count();
+    assert_share(stable_share(folder.path(), &[]), below as f64 / 40.0);
+}
+
+/// The mean of Φ((1.1 − m − (x − m) c)/(h c)), h by Silverman's rule and c = 1/√(1 + h²/s²); from SciPy.
+#[test]
+fn smoothed_values_have_the_share_of_their_kernels() {
+    let (folder, _) = built_from_measured(", column = \"x\"");
+    assert_share(stable_share(folder.path(), &[]), SMOOTHED);
+    let (folder, _) = built_from_measured(", column = \"x\", lower = 0.5");
+    assert!(stable_share(folder.path(), &[]) < SMOOTHED, "what was below the bound has gone");
+}
+
+const SMOOTHED: f64 = 0.7056019977352472;
+
+#[test]
+fn files_and_printed_studies_keep_levels_and_measured_values() {
+    for (keys, law) in [(", column = \"x\"", "data"), (", column = \"x\", smoothing = \"none\", upper = 9.0", "data")] {
+        let (folder, study) = built_from_measured(keys);
+        let path = folder.path();
+        output(path, &["convert", "built.pcc", "there.json"]);
+        output(path, &["convert", "there.json", "back.pcc"]);
+        assert_eq!(fs::read(path.join("built.pcc")).unwrap(), fs::read(path.join("back.pcc")).unwrap());
+        let shown = in_one_line(&output(path, &["inspect", "built.pcc"]));
+        assert!(shown.contains(law) && shown.contains("count 40"), "{shown}");
+        // What decides can be asked without the table.
+        fs::remove_file(path.join("measured.csv")).unwrap();
+        stable_share(path, &[]);
+        let message = in_one_line(&refusal(path, &["build", "study.toml"]));
+        assert!(message.contains("inputs.x.file: measured.csv cannot be read"), "{message}");
+        let (folder, _) = measured(keys);
+        let first = Study::from_toml_in(&study, folder.path()).unwrap();
+        let again = Study::from_toml_in(&first.to_toml(), folder.path()).unwrap();
+        assert_eq!((again.problem_hash(), again.study_hash()), (first.problem_hash(), first.study_hash()));
+        let text = fs::read_to_string(path.join("there.json")).unwrap();
+        for (from, to) in [("\"count\"", "\"number\""), ("8.5,", "8.4,"), ("\"own\"", "\"hermite\"")] {
+            let changed = text.replacen(from, to, 1);
+            assert_ne!(changed, text, "{from}");
+            fs::write(path.join("bad.json"), changed).unwrap();
+            refusal(path, &["inspect", "bad.json"]);
+        }
+    }
+    let study = oscillator(&[("x", LEVELS)], 1.1, "");
+    let first = Study::from_toml(&study).unwrap();
+    let again = Study::from_toml(&first.to_toml()).unwrap();
+    assert_eq!((again.problem_hash(), again.study_hash()), (first.problem_hash(), first.study_hash()));
+    let folder = built_from(&study);
+    output(folder.path(), &["convert", "built.pcc", "there.json"]);
+    output(folder.path(), &["convert", "there.json", "back.pcc"]);
+    let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(bytes("built.pcc"), bytes("back.pcc"));
+}
+
+#[test]
+fn tables_and_levels_that_make_no_sense_are_refused() {
+    for (law, expected) in [
+        ("\"discrete\", values = [1.0]", "all values are equal"),
+        ("\"discrete\", values = [1.0, 1.0]", "all values are equal"),
+        ("\"discrete\", values = [1.0, nan]", "must be finite numbers"),
+        ("\"discrete\", values = [1.0, 2.0], weights = [1.0]", "2 values and 1 weights"),
+        ("\"discrete\", values = [1.0, 2.0], weights = [1.0, 0.0]", "must be positive numbers"),
+        ("\"discrete\"", "a discrete law has values"),
+        ("\"normal\", mean = 1.0, std = 0.1, file = \"measured.csv\"", "a normal law has mean and std"),
+        ("\"data\"", "a data law has file"),
+        ("\"data\", file = \"measured.csv\"", "has 2 columns; add column = \"part\""),
+        ("\"data\", file = \"measured.csv\", column = \"y\"", "no column \"y\"; it has part, x"),
+        ("\"data\", file = \"words.csv\"", "line 2: \"two\" is no finite number"),
+        ("\"data\", file = \"few.csv\"", "there are 9 values, but a law takes at least 10"),
+        ("\"data\", file = \"measured.csv\", column = \"x\", lower = 0.7", "0.6 was measured"),
+        ("\"data\", file = \"measured.csv\", column = \"x\", smoothing = \"some\"", "choose \"kernel\" or \"none\""),
+        ("\"data\", file = \"measured.csv\", column = \"x\", mean = 1.0", "a data law has file"),
+    ] {
+        let (folder, _) = measured("");
+        let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+        write("study.toml", &oscillator(&[("x", law)], 1.1, ""));
+        write("words.csv", "1.0\ntwo\n");
+        write("few.csv", &"x\n".to_owned().chars().chain("1\n2\n3\n4\n5\n6\n7\n8\n9\n".chars()).collect::<String>());
+        let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
+        assert!(message.contains(expected) && message.contains("inputs.x"), "{law}: {message}");
+    }
+}
