@@ -57,7 +57,7 @@ fn main() -> Result<(), pcc::Error> {
     let surrogate = build_with(&study, Box::new(Belt), &Silent)?;
     let stable = monte_carlo(&surrogate, 1_000_000, 1, &Silent)?.stable_proportion();
     println!("{} model runs", surrogate.training.counts.direct_computations);
-    let interval = stable.wilson(0.95);
+    let interval = stable.interval(0.95);
     println!(
         "stable in {:.2} % of cases, from {:.2} to {:.2} %",
         100.0 * stable.value(),

@@ -17,7 +17,7 @@
 //!
 //! let loaded = Surrogate::read(&file)?;
 //! let stable = monte_carlo(&loaded, 100_000, 1, &Silent)?.stable_proportion();
-//! let interval = stable.wilson(0.95);
+//! let interval = stable.interval(0.95);
 //! assert!(interval.lower < stable.value() && stable.value() < interval.upper);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

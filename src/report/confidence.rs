@@ -1,6 +1,6 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
-use super::numbers::{level, share, share_range, significant};
+use super::numbers::{level, plain_range, share, share_below, share_range, significant};
 use super::survey::LEVEL;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Proportion};
@@ -11,7 +11,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Confidence {
-    /// Wilson interval of the share: what the finite number of samples leaves open.
+    /// Interval of the share: what the finite number of samples leaves open.
     pub interval: Interval,
     /// The share if max Re λ were larger or smaller by its residuals' central quantiles: what the surrogate leaves
     /// open; null if unknown.
@@ -99,7 +99,7 @@ impl Confidence {
     /// Of direct computations, which leave open what their number does.
     pub(super) fn of_model(stable: Proportion) -> Self {
         Self {
-            interval: stable.wilson(LEVEL),
+            interval: stable.interval(LEVEL),
             surrogate_band: None,
             estimated_error_percent: None,
             verified_bound: None,
@@ -170,9 +170,13 @@ fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
 impl Confidence {
     /// What leaves how much open: names, values and words.
     pub(super) fn facts(&self, named: Named) -> Vec<(&'static str, String, String)> {
-        let range = |interval: &Interval| match named {
-            Named::Unstable => share_range(complement(interval.upper), complement(interval.lower)),
-            _ => share_range(interval.lower, interval.upper),
+        let ends = |interval: &Interval| match named {
+            Named::Unstable => [complement(interval.upper), complement(interval.lower)],
+            _ => [interval.lower, interval.upper],
+        };
+        let range = |interval: &Interval| match ends(interval) {
+            [lower, upper] if lower <= 0.0 && upper > 0.0 && named == Named::Unstable => share_below(upper),
+            [lower, upper] => share_range(lower, upper),
         };
         let Self { interval, surrogate_band, estimated_error_percent, verified_bound, basis } = self;
         let by = match basis.replicates {
@@ -188,7 +192,8 @@ impl Confidence {
         facts.extend((!is_marginal).then(|| match surrogate_band {
             Some(band) => {
                 let words = format!("left open by the fit, {} of points{place}", level(band.level));
-                ("surrogate band", range(band), words)
+                let [lower, upper] = ends(band);
+                ("surrogate band", plain_range(lower, upper), words)
             }
             None => ("surrogate band", "unknown".to_owned(), "no point could be left out".to_owned()),
         }));

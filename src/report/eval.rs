@@ -363,7 +363,7 @@ impl EvalReport {
         let labelled: Vec<(Label, &EigenvalueSummary)> =
             outputs.iter().flat_map(Output::labels).zip(&summary.eigenvalues).collect();
         let proportion = |hits: u64| Proportion { hits, samples: stable.samples };
-        let wilson = |hits: u64| proportion(hits).wilson(LEVEL);
+        let interval = |hits: u64| proportion(hits).interval(LEVEL);
         let (marginal, unstable) = (summary.marginal(), summary.unstable);
         let (flutter, divergence) = (summary.fluttering(), summary.divergent);
         let mut names: Vec<_> = outputs.iter().flat_map(|output| &output.components).collect();
@@ -387,11 +387,11 @@ impl EvalReport {
             flutter_proportion: proportion(flutter).value(),
             divergence_proportion: proportion(divergence).value(),
             intervals: Intervals {
-                stable: stable.wilson(LEVEL),
-                marginal: wilson(marginal),
-                unstable: wilson(unstable),
-                flutter: wilson(flutter),
-                divergence: wilson(divergence),
+                stable: stable.interval(LEVEL),
+                marginal: interval(marginal),
+                unstable: interval(unstable),
+                flutter: interval(flutter),
+                divergence: interval(divergence),
             },
             judged_by: String::new(),
             undamped: false,

@@ -66,7 +66,12 @@ impl EvalReport {
         } else if self.can_diverge() {
             stated.push(("unstable", self.unstable_proportion, kinds()));
         }
-        stated.into_iter().for_each(|(name, value, words)| facts.add(name, share(value), words));
+        // That none of so many was unstable says more than 0 %.
+        let value = |name: &str, value: f64| match name == "unstable" && value == 0.0 && named == Named::Unstable {
+            true => format!("none of {}", count(self.samples)),
+            false => share(value),
+        };
+        stated.into_iter().for_each(|(name, stated, words)| facts.add(name, value(name, stated), words));
         if let (Some(unanswered), Some(bounds)) = (self.unanswered_proportion, self.bounds) {
             let words = format!("{} are stable, whatever the model would say there", interval(&bounds.stable));
             facts.add("unanswered", share(unanswered), words);

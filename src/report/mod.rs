@@ -41,7 +41,7 @@ pub use eval::EvalReport;
 pub use fit::FitReport;
 pub use inspect::InspectReport;
 pub(crate) use layout::{WIDTH, width};
-pub use numbers::{plain, share, share_range, significant};
+pub use numbers::{plain, share, share_below, share_range, significant};
 pub use part::{MergeReport, PartReport};
 pub use reproduction::{figure_sheets, short_table_2, table_2};
 pub use surrogate_page::{SurrogatePage, Validation};

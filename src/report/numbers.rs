@@ -1,8 +1,8 @@
 //! Numbers as people read them: one style in terminal, tables, pages and pictures.
 //!
-//! Shares are percentages with three decimals, and powers of ten where those would say 0 or 100: 19.978 %, 4.4·10⁻⁶,
-//! 1 − 4.4·10⁻⁶. The ends of an interval are rounded outward, so that what is printed never excludes what it is made
-//! from.
+//! Shares are percentages with three decimals, and powers of ten where those would say 0 or 100: 19.978 %, 4.4·10⁻⁶, 1
+//! − 4.4·10⁻⁶. The ends of an interval are rounded outward to two significant digits of its half-width, so that what is
+//! printed never excludes what it is made from.
 
 use pcc_evaluate::probability::statistics::Interval;
 
@@ -123,51 +123,85 @@ pub fn share(value: f64) -> String {
     match value {
         value if value <= 0.0 => "0 %".to_owned(),
         value if value >= 1.0 => "100 %".to_owned(),
-        value if value < SMALL => small(value, Rounding::Nearest),
-        value if 1.0 - value < SMALL => format!("1 − {}", small(1.0 - value, Rounding::Nearest)),
+        value if value < SMALL => small(value, Rounding::Nearest, exponent(value) - 1),
+        value if 1.0 - value < SMALL => {
+            let rest = 1.0 - value;
+            format!("1 − {}", small(rest, Rounding::Nearest, exponent(rest) - 1))
+        }
         value => format!("{:.DECIMALS$} %", 100.0 * value),
     }
 }
 
-/// The ends of an interval of shares, rounded outward.
+/// The ends of an interval of shares, rounded outward to two significant digits of the half-width.
 ///
 /// # Examples
 ///
 /// ```
 /// use pcc::report::share_range;
 /// assert_eq!(share_range(0.198991, 0.200561), "19.899 to 20.057 %");
-/// assert_eq!(share_range(0.19899, 0.20056), "19.899 to 20.056 %");
-/// assert_eq!(share_range(4.04e-6, 4.85e-6), "4.0·10⁻⁶ to 4.9·10⁻⁶");
-/// assert_eq!(share_range(1.0 - 4.85e-6, 1.0 - 4.04e-6), "1 − 4.9·10⁻⁶ to 1 − 4.0·10⁻⁶");
-/// assert_eq!(share_range(0.0, 3.7e-6), "0 to 3.7·10⁻⁶");
+/// assert_eq!(share_range(0.1921, 0.2079), "19.21 to 20.79 %");
+/// assert_eq!(share_range(0.15, 0.25), "15 to 25 %");
+/// assert_eq!(share_range(4.043e-6, 4.85e-6), "4.04·10⁻⁶ to 4.85·10⁻⁶");
+/// assert_eq!(share_range(1.0 - 4.85e-6, 1.0 - 4.043e-6), "1 − 4.85·10⁻⁶ to 1 − 4.04·10⁻⁶");
+/// assert_eq!(share_range(0.0, 3.689e-8), "0 to 3.7·10⁻⁸");
 /// ```
 pub fn share_range(lower: f64, upper: f64) -> String {
+    range(lower, upper, MOST_DECIMALS)
+}
+
+/// The same with so many decimals of a percentage at most, where both ends are seen with them: for what is known better
+/// than the share that it belongs to is printed.
+pub(super) fn plain_range(lower: f64, upper: f64) -> String {
+    range(lower, upper, DECIMALS)
+}
+
+fn range(lower: f64, upper: f64, most: usize) -> String {
     let (low, high) = (Rounding::Down, Rounding::Up);
     if lower <= 0.0 && upper <= 0.0 || lower >= 1.0 && upper >= 1.0 {
         return share(lower);
     }
+    let half_width = 0.5 * (upper - lower);
+    let unit = if half_width > 0.0 { exponent(half_width) - 1 } else { -(DECIMALS as i32) - 2 };
     if upper < SMALL {
-        let lower = if lower <= 0.0 { "0".to_owned() } else { small(lower, low) };
-        return format!("{lower} to {}", small(upper, high));
+        let lower = if lower <= 0.0 { "0".to_owned() } else { small(lower, low, unit) };
+        return format!("{lower} to {}", small(upper, high, unit));
     }
     if 1.0 - lower < SMALL {
-        let upper =
-            if upper >= 1.0 { "1".to_owned() } else { format!("1 − {}", small(1.0 - upper, high.reversed())) };
-        return format!("1 − {} to {upper}", small(1.0 - lower, low.reversed()));
+        let upper = match upper {
+            upper if upper >= 1.0 => "1".to_owned(),
+            upper => format!("1 − {}", small(1.0 - upper, high.reversed(), unit)),
+        };
+        return format!("1 − {} to {upper}", small(1.0 - lower, low.reversed(), unit));
     }
     // Ends that are not 0 or 1 are not to look as if they were.
     let visible = |rest: f64| if rest > 0.0 { (-(100.0 * rest).log10()).ceil().max(0.0) as usize } else { 0 };
-    let decimals = visible(lower).max(visible(1.0 - upper)).clamp(DECIMALS, MOST_DECIMALS);
-    let end = |value: f64, rounding: Rounding| match value {
-        value if value <= 0.0 => "0".to_owned(),
-        value if value >= 1.0 => "100".to_owned(),
-        value => {
-            let unit = 10f64.powi(-(decimals as i32) - 2);
-            let text = |units: f64| format!("{:.decimals$}", units / 10f64.powi(decimals as i32));
-            text(rounding.units(value, unit, |units| read(&format!("{}e-2", text(units)))))
-        }
-    };
+    let of_width = ((-unit - 2).max(0) as usize).min(most);
+    let decimals = visible(lower).max(visible(1.0 - upper)).max(of_width).min(MOST_DECIMALS);
+    let end = |value: f64, rounding| percent(value, rounding, decimals);
     format!("{} to {} %", end(lower, low), end(upper, high))
+}
+
+/// A share that is less than this with the confidence of an interval from 0: the upper end.
+///
+/// # Examples
+///
+/// ```
+/// use pcc::report::share_below;
+/// assert_eq!([3.689e-8, 0.0036832].map(share_below), ["below 3.7·10⁻⁸", "below 0.37 %"]);
+/// ```
+pub fn share_below(upper: f64) -> String {
+    let range = share_range(0.0, upper);
+    format!("below {}", range.strip_prefix("0 to ").unwrap_or(&range))
+}
+
+/// A share in percent, without the sign.
+fn percent(value: f64, rounding: Rounding, decimals: usize) -> String {
+    if value <= 0.0 || value >= 1.0 {
+        return if value <= 0.0 { "0".to_owned() } else { "100".to_owned() };
+    }
+    let unit = 10f64.powi(-(decimals as i32) - 2);
+    let text = |units: f64| format!("{:.decimals$}", units / 10f64.powi(decimals as i32));
+    text(rounding.units(value, unit, |units| read(&format!("{}e-2", text(units)))))
 }
 
 /// [`share_range`] of an interval.
@@ -175,13 +209,21 @@ pub(super) fn interval(interval: &Interval) -> String {
     share_range(interval.lower, interval.upper)
 }
 
-/// Two digits and a power of ten.
-fn small(value: f64, rounding: Rounding) -> String {
-    let exponent = value.log10().floor() as i32;
-    let tenths = rounding.units(value, 10f64.powi(exponent - 1), |tenths| read(&format!("{tenths}e{}", exponent - 1)));
-    match tenths >= 100.0 {
-        true => power_of_ten("1.0", exponent + 1),
-        false => power_of_ten(&format!("{:.1}", tenths / 10.0), exponent),
+/// The power of ten of the first significant digit.
+fn exponent(value: f64) -> i32 {
+    value.log10().floor() as i32
+}
+
+/// Digits down to that of 10^`unit`, one at least, and a power of ten.
+fn small(value: f64, rounding: Rounding, unit: i32) -> String {
+    let exponent = exponent(value);
+    let decimals = (exponent - unit).clamp(0, MOST_DECIMALS as i32);
+    let unit = exponent - decimals;
+    let units = rounding.units(value, 10f64.powi(unit), |units| read(&format!("{units}e{unit}")));
+    let (shown, scale) = (decimals as usize, 10f64.powi(decimals));
+    match units >= 10.0 * scale {
+        true => power_of_ten(&format!("{:.shown$}", units / (10.0 * scale)), exponent + 1),
+        false => power_of_ten(&format!("{:.shown$}", units / scale), exponent),
     }
 }
 

@@ -51,10 +51,10 @@ impl Unanswered {
     /// The known samples alone, less what is unforeseen, and with all that are not known; the ends as far out as so
     /// many samples leave open.
     fn bounds(&self, known: u64) -> Interval {
-        let wilson = |hits: u64| Proportion { hits, samples: self.samples }.wilson(LEVEL);
+        let interval = |hits: u64| Proportion { hits, samples: self.samples }.interval(LEVEL);
         Interval {
-            lower: (wilson(known).lower - self.unforeseen).max(0.0),
-            upper: (wilson(known + self.unknown).upper + self.unforeseen).min(1.0),
+            lower: (interval(known).lower - self.unforeseen).max(0.0),
+            upper: (interval(known + self.unknown).upper + self.unforeseen).min(1.0),
             level: LEVEL,
         }
     }

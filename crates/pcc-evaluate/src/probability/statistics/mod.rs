@@ -1,5 +1,6 @@
 //! Estimates from samples: proportions with their intervals, bounds that survive a wrong surrogate, moments that merge.
 
+mod binomial_tail;
 mod density;
 mod merge_tree;
 mod moments;
