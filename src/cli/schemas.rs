@@ -3,8 +3,8 @@
 use super::commands::{build, convert, man, report, reproduce, run, version};
 use super::points::PointsReport;
 use crate::report::{
-    BuildReport, CertifyReport, CompareReport, DesignReport, EvalReport, IngestReport, InspectReport, JournalReport,
-    MergeReport, PartReport, SweepReport,
+    BuildReport, CertifyPlanReport, CertifyReport, CompareReport, DesignReport, EvalReport, IngestReport,
+    InspectReport, JournalReport, MergeReport, PartReport, SweepReport,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -31,6 +31,13 @@ documents! {
         Surrogate(BuildReport),
         /// With --show-study.
         Study(build::ShownStudy),
+    }
+    /// What `pcc certify --json` prints.
+    Certify {
+        /// A certificate.
+        Made(CertifyReport),
+        /// With --target-width.
+        Plan(CertifyPlanReport),
     }
     /// What `pcc eval --json` prints.
     Eval {
@@ -66,7 +73,7 @@ documents! {
 pub fn schemas() -> Vec<(&'static str, String)> {
     vec![
         ("build", schema::<Build>()),
-        ("certify", schema::<CertifyReport>()),
+        ("certify", schema::<Certify>()),
         ("compare", schema::<CompareReport>()),
         ("convert", schema::<convert::Converted>()),
         ("design", schema::<DesignReport>()),

@@ -1,5 +1,6 @@
 //! How sure a proportion is: what sampling leaves open, what the surrogate leaves open, and what is verified.
 
+use super::certify::{assumed, contradicts, ends as ends_in_words};
 use super::numbers::{level, plain_range, share, share_below, share_range, significant};
 use super::survey::LEVEL;
 use pcc_evaluate::foundation::count;
@@ -20,6 +21,8 @@ pub struct Confidence {
     pub estimated_error_percent: Option<f64>,
     /// The certificate with the most model runs, the first of equals; null if there is none.
     pub verified_bound: Option<VerifiedBound>,
+    /// What the same certificate says if errors fall off, which is not verified; null if it says nothing.
+    pub bound_if_errors_fall_off: Option<AssumedShare>,
     /// What the text says besides.
     #[serde(skip)]
     pub basis: Basis,
@@ -64,9 +67,23 @@ pub struct VerifiedBound {
     pub seed: u64,
     /// How many certificates the file has: choosing among many would void the level.
     pub certificates: usize,
+    /// Probability with which each end alone holds; null for certificates of earlier versions.
+    pub side_level: Option<f64>,
     /// The bound of unstable samples, where some are marginal.
     #[serde(skip)]
     pub unstable: Option<[f64; 2]>,
+}
+
+/// A bound of the stable share that rests on an assumption: one of its ends is 0 or 1.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct AssumedShare {
+    /// The bound.
+    #[serde(flatten)]
+    pub bound: Interval,
+    /// In words, as a share of stable samples and of unstable ones.
+    #[serde(skip)]
+    words: [String; 2],
 }
 
 impl Confidence {
@@ -86,6 +103,7 @@ impl Confidence {
             surrogate_band: (!decision.max_re_residuals.is_empty()).then_some(band),
             estimated_error_percent: decision.proportion_error.map(|error| 100.0 * error),
             verified_bound: verified_bound(surrogate),
+            bound_if_errors_fall_off: chosen(surrogate).and_then(|(certificate, _)| assumed_share(certificate)),
             basis: Basis {
                 samples: stable.samples,
                 replicates: 1,
@@ -103,6 +121,7 @@ impl Confidence {
             surrogate_band: None,
             estimated_error_percent: None,
             verified_bound: None,
+            bound_if_errors_fall_off: None,
             basis: Basis {
                 samples: stable.samples,
                 replicates: 1,
@@ -116,7 +135,11 @@ impl Confidence {
     /// What to say first where a certificate excludes the share of the surrogate.
     pub(super) fn contradiction(surrogate: &Surrogate, share: f64) -> Option<String> {
         let own = |certificate: &&Certificate| certificate.problem_hash == surrogate.provenance.problem_hash;
-        let excludes = |certificate: &&Certificate| share < certificate.lower || share > certificate.upper;
+        // Few samples may lie outside the bound of a rare share by chance: strata have many of their own.
+        let excludes = |certificate: &&Certificate| match certificate.strata {
+            Some(_) => contradicts(certificate),
+            None => share < certificate.lower || share > certificate.upper,
+        };
         let certificate = surrogate.certificates.iter().filter(own).find(excludes)?;
         Some(format!(
             "a certificate contradicts the surrogate: by {} fresh model runs {} are stable, not {}; trust it, and build \
@@ -132,6 +155,7 @@ impl Confidence {
         self.basis.is_confined = true;
         self.estimated_error_percent = None;
         self.verified_bound = None;
+        self.bound_if_errors_fall_off = None;
     }
 }
 
@@ -157,14 +181,33 @@ fn complement(share: f64) -> f64 {
     ((1.0 - share) * RESOLUTION).round() / RESOLUTION
 }
 
-fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
+/// The certificate with the most model runs, and how many there are.
+fn chosen(surrogate: &Surrogate) -> Option<(&Certificate, usize)> {
     let own = |certificate: &&Certificate| certificate.problem_hash == surrogate.provenance.problem_hash;
     let valid: Vec<&Certificate> = surrogate.certificates.iter().filter(own).collect();
     let most = valid.iter().map(|certificate| certificate.samples).max()?;
     let chosen = valid.iter().find(|certificate| certificate.samples == most)?;
-    let Certificate { lower, upper, level, samples, seed, marginal, .. } = **chosen;
-    let unstable = marginal.map(|bounds| bounds.unstable);
-    Some(VerifiedBound { bound: Interval { lower, upper, level }, samples, seed, certificates: valid.len(), unstable })
+    Some((chosen, valid.len()))
+}
+
+fn verified_bound(surrogate: &Surrogate) -> Option<VerifiedBound> {
+    let (certificate, certificates) = chosen(surrogate)?;
+    let Certificate { lower, upper, level, samples, seed, marginal, .. } = *certificate;
+    Some(VerifiedBound {
+        bound: Interval { lower, upper, level },
+        samples,
+        seed,
+        certificates,
+        side_level: certificate.strata.as_ref().map(|strata| strata.side_level),
+        unstable: marginal.map(|bounds| bounds.unstable),
+    })
+}
+
+fn assumed_share(certificate: &Certificate) -> Option<AssumedShare> {
+    let strata = certificate.strata.as_ref()?;
+    let [lower, upper] = strata.rare_side.stable([0.0, strata.if_errors_fall_off.bound.upper()?]);
+    let words = [assumed(strata, false)?, assumed(strata, true)?];
+    Some(AssumedShare { bound: Interval { lower, upper, level: strata.side_level }, words })
 }
 
 impl Confidence {
@@ -178,7 +221,7 @@ impl Confidence {
             [lower, upper] if lower <= 0.0 && upper > 0.0 && named == Named::Unstable => share_below(upper),
             [lower, upper] => share_range(lower, upper),
         };
-        let Self { interval, surrogate_band, estimated_error_percent, verified_bound, basis } = self;
+        let Self { interval, surrogate_band, estimated_error_percent, verified_bound, basis, .. } = self;
         let by = match basis.replicates {
             0 | 1 => format!("{} samples", count(basis.samples)),
             replicates => format!("{replicates} replicates"),
@@ -208,11 +251,11 @@ impl Confidence {
         facts.push(match verified_bound {
             None if basis.is_confined => ("verified bound", "none for a part of the domain".to_owned(), String::new()),
             None => ("verified bound", "none yet".to_owned(), "pcc certify makes one from fresh runs".to_owned()),
-            Some(VerifiedBound { bound, samples, seed, certificates, unstable }) => {
+            Some(VerifiedBound { bound, samples, seed, certificates, side_level, unstable }) => {
                 let others =
                     if *certificates > 1 { format!(", one of {certificates} certificates") } else { String::new() };
-                let words =
-                    format!("{}, {} fresh model runs, seed {seed}{others}", level(bound.level), count(*samples));
+                let holds = side_level.map_or_else(|| level(bound.level), |side| ends_in_words(side, bound.level));
+                let words = format!("{holds}, {} fresh model runs, seed {seed}{others}", count(*samples));
                 let bound = match (is_marginal, unstable) {
                     (true, &Some([lower, upper])) => share_range(lower, upper),
                     (true, None) => format!("{} stable", range(bound)),
@@ -221,6 +264,11 @@ impl Confidence {
                 ("verified bound", bound, words)
             }
         });
+        facts.extend(self.bound_if_errors_fall_off.as_ref().filter(|_| !is_marginal).map(|assumed| {
+            let [stable, unstable] = &assumed.words;
+            let bound = if named == Named::Unstable { unstable } else { stable };
+            ("if errors fall off", bound.clone(), format!("{}, not verified", level(assumed.bound.level)))
+        }));
         facts
     }
 

@@ -3,6 +3,7 @@
 mod build;
 mod campaign;
 mod certify;
+mod certify_plan;
 mod charts;
 mod compare;
 mod confidence;
@@ -36,6 +37,7 @@ mod warnings;
 pub use build::{BuildReport, FailedRun, RecordedRuns};
 pub use campaign::{DesignReport, IngestReport, JournalModel, JournalReport};
 pub use certify::CertifyReport;
+pub use certify_plan::CertifyPlanReport;
 pub use compare::CompareReport;
 pub use eval::EvalReport;
 pub use fit::FitReport;

@@ -194,6 +194,22 @@ pub fn share_below(upper: f64) -> String {
     format!("below {}", range.strip_prefix("0 to ").unwrap_or(&range))
 }
 
+/// The same of an upper end above a share that is known: as many digits as its distance from that has.
+pub(super) fn below(known: f64, upper: f64) -> String {
+    let range = share_range(known.min(upper), upper);
+    format!("below {}", range.rsplit(" to ").next().unwrap_or(&range))
+}
+
+/// A lower end below a share that is known.
+pub(super) fn above(lower: f64, known: f64) -> String {
+    let range = share_range(lower, known.max(lower));
+    match range.split_once(" to ") {
+        Some((end, _)) if range.ends_with('%') => format!("above {end} %"),
+        Some((end, _)) => format!("above {end}"),
+        None => format!("above {range}"),
+    }
+}
+
 /// A share in percent, without the sign.
 fn percent(value: f64, rounding: Rounding, decimals: usize) -> String {
     if value <= 0.0 || value >= 1.0 {

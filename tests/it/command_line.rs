@@ -711,11 +711,30 @@ fn certificates_are_added_and_shown() {
     let report: serde_json::Value =
         serde_json::from_str(&output(folder.path(), &["eval", "both.json", "-n", "1000", "--json"])).unwrap();
     let bound = &report["verified_bound"];
-    assert_eq!((bound["samples"].as_u64(), bound["certificates"].as_u64()), (Some(200), Some(2)));
+    assert_eq!((bound["samples"].as_u64(), bound["certificates"].as_u64()), (Some(200 + 67 + 50), Some(2)));
     assert!(bound["lower"].as_f64() < report["stable_proportion"].as_f64());
     for line in ["sampling interval", "surrogate band", "verified bound"] {
         assert!(output(folder.path(), &["eval", "both.json", "-n", "1000"]).contains(line), "{line}");
     }
+}
+
+#[test]
+fn the_runs_of_a_certificate_are_said_and_none_is_made() {
+    let folder = invariants_workplace();
+    let before = fs::read(folder.path().join("surrogate.pcc")).unwrap();
+    let plan = ["certify", "surrogate.pcc", "--target-width", "0.002"];
+    assert_output!("certify_plan", output(folder.path(), &plan));
+    let report: serde_json::Value =
+        serde_json::from_str(&output(folder.path(), &[&plan[..], &["--json"]].concat())).unwrap();
+    let first = &report["needed"][0];
+    assert_eq!(first["runs"].as_u64(), ["outside", "layer", "inside"].iter().map(|name| first[name].as_u64()).sum());
+    assert_eq!(fs::read(folder.path().join("surrogate.pcc")).unwrap(), before, "nothing was written");
+    for wrong in ["0", "1", "-0.1", "x", "nan"] {
+        let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--target-width", wrong]);
+        assert!(message.contains("a part of 1"), "{message}");
+    }
+    let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--target-width", "1e-9"]);
+    assert!(message.contains("use a larger width"), "{message}");
 }
 
 #[test]
@@ -736,8 +755,10 @@ fn certificates_that_would_mislead_are_refused() {
     output(folder.path(), &own);
     let message = refusal(folder.path(), &own);
     assert!(message.contains("has a certificate of seed 1 already"), "{message}");
-    let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--study", "study.toml", "-n", "0"]);
-    assert!(message.contains("use at least 1"), "{message}");
+    for (few, hint) in [("0", "use at least 1"), ("9", "use at least 10"), ("-3", "whole number")] {
+        let message = refusal(folder.path(), &["certify", "surrogate.pcc", "--study", "study.toml", "-n", few]);
+        assert!(message.contains(hint), "{message}");
+    }
 }
 
 #[test]

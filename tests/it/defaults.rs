@@ -23,7 +23,10 @@ fn numbers_and_studies_have_defaults() {
     assert_eq!(json(&folder, &["eval", "s.pcc"])["samples"], 1_000_000);
     assert_eq!(json(&folder, &["compare", "s.pcc"])["samples"], 10_000);
     assert_eq!(json(&folder, &["reference", "clutch-r2.toml"])["samples"], 10_000);
-    assert_eq!(json(&folder, &["certify", "s.pcc", "-o", "c.pcc"])["certificates"][0]["samples"], 300);
+    let certificate = &json(&folder, &["certify", "s.pcc", "-o", "c.pcc"])["certificates"][0];
+    let runs = |name: &str| certificate[name]["runs"].as_u64().unwrap();
+    assert_eq!([runs("outside"), runs("layer"), runs("inside")], [300, 100, 50]);
+    assert_eq!(certificate["samples"], 450);
     assert_eq!(json(&folder, &["report", "s.pcc", "-n", "1000"])["compare"], serde_json::Value::Null);
     assert_eq!(json(&folder, &["report", "s.pcc", "-n", "1000", "--runs", "50"])["compare"]["samples"], 50);
 }

@@ -236,6 +236,74 @@ fn domain(b: &mut B) -> Value {
     b.fields(&[("inputs", &|b| b.list(|b| b.option(interval)))])
 }
 
+/// Fields of a certificate in section 9, version 1.
+const CERTIFICATE: [Field; 9] = [
+    ("seed", &u64_number),
+    ("samples", &u64_number),
+    ("scheme", &B::text),
+    ("falsely_stable", &u64_number),
+    ("falsely_unstable", &u64_number),
+    ("level", &B::float),
+    ("lower", &B::float),
+    ("upper", &B::float),
+    ("problem_hash", &B::text),
+];
+
+fn certificates(b: &mut B) -> Value {
+    b.fields(&[("certificates", &|b| b.list(|b| b.fields(&CERTIFICATE)))])
+}
+
+/// Section 9 in version 2.
+fn certificates_2(b: &mut B) -> Value {
+    let bounds: [Field; 5] = [
+        ("falsely_marginal", &u64_number),
+        ("marginal_lower", &B::float),
+        ("marginal_upper", &B::float),
+        ("unstable_lower", &B::float),
+        ("unstable_upper", &B::float),
+    ];
+    let more: [Field; 3] = [
+        ("marginal", &|b| b.option(|b| b.fields(&bounds))),
+        ("failed", &u64_number),
+        ("strata", &|b| b.option(strata)),
+    ];
+    let certificate = |b: &mut B| {
+        let mut all = b.fields(&CERTIFICATE);
+        let Value::Object(added) = b.fields(&more) else { panic!("an object") };
+        all.as_object_mut().unwrap().extend(added);
+        all
+    };
+    b.fields(&[("certificates", &|b| b.list(certificate))])
+}
+
+fn strata(b: &mut B) -> Value {
+    let runs = |b: &mut B| b.fields(&[("runs", &u64_number), ("rare", &u64_number), ("failed", &u64_number)]);
+    let tail = |b: &mut B| b.fields(&[("error", &B::float), ("runs", &u64_number), ("twice", &u64_number)]);
+    let reasons = ["failed_runs", "marginal", "no_runs", "rare_far_away", "no_thinning"];
+    let assumed = |b: &mut B| match b.u32() {
+        0 => json!({ "upper": b.float() }),
+        1 => json!({ "withheld": b.kind(&reasons) }),
+        other => panic!("kind {other}"),
+    };
+    b.fields(&[
+        ("side_level", &B::float),
+        ("rare_side", &|b| b.kind(&["stable", "not_stable"])),
+        ("rare_lower", &B::float),
+        ("rare_upper", &B::float),
+        ("surrogate_samples", &u64_number),
+        ("surrogate_rare", &u64_number),
+        ("surrogate_layer", &u64_number),
+        ("layer_depth", &B::float),
+        ("outside", &runs),
+        ("layer", &runs),
+        ("inside", &runs),
+        ("far_runs", &u64_number),
+        ("largest_error", &B::float),
+        ("thinning", &|b| b.list(tail)),
+        ("assumed", &assumed),
+    ])
+}
+
 /// The document that a file holds, read by hand.
 fn document(file: &[u8]) -> Value {
     let mut b = Bytes { bytes: file.to_vec(), at: 0 };
@@ -243,7 +311,7 @@ fn document(file: &[u8]) -> Value {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [Field; 12] = [
+    let sections: [Field; 13] = [
         ("meta", &meta),
         ("inputs", &inputs),
         ("outputs", &outputs),
@@ -252,23 +320,25 @@ fn document(file: &[u8]) -> Value {
         ("training", &training),
         ("decision", &decision),
         ("self_test", &self_test),
+        ("certificates", &certificates),
         ("verdict", &verdict),
         ("coverage", &coverage),
         ("descriptions", &descriptions),
         ("domain", &domain),
     ];
-    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 13].into_iter().zip(sections) {
+    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13].into_iter().zip(sections) {
         let is_next = b.at < file.len() - 4 && u16::from_le_bytes([file[b.at], file[b.at + 1]]) == kind;
-        if kind > 9 && !is_next {
+        if kind > 8 && !is_next {
             continue;
         }
         let header = [b.u16(), b.u16(), b.u16(), b.u16()];
         let version = header[1];
-        assert_eq!(header, [kind, version, u16::from(kind < 11), 0], "header of {name}");
+        assert_eq!(header, [kind, version, u16::from(kind < 11 && kind != 9), 0], "header of {name}");
         let length = b.u64() as usize;
         let before = b.at;
         document[name] = match (name, version) {
             ("outputs", 2) => outputs_2(&mut b),
+            ("certificates", 2) => certificates_2(&mut b),
             (_, 1) => read(&mut b),
             _ => panic!("{name} has version {version}"),
         };
@@ -329,6 +399,32 @@ fn it_reads_units_and_labels() {
         { "unit": "N/m", "label": "contact stiffness" },
     ]);
     assert_eq!(found["descriptions"]["inputs"], expected);
+}
+
+/// Of independent points, in version 1, and with strata and marginal points, in version 2.
+#[test]
+fn it_reads_certificates_of_both_versions() {
+    use pcc_compile::reference::certify_with_model;
+    use pcc_evaluate::artifact::{Format, decode, encode};
+    use pcc_evaluate::foundation::Silent;
+    let study = crate::support::invariants_study(2);
+    let mut surrogate = crate::support::built("clutch-r2").clone();
+    let made = certify_with_model(&surrogate, &study, 30, 1, 0.95, &Silent).unwrap();
+    let independent = pcc_evaluate::surrogate::Certificate { strata: None, ..made.clone() };
+    let bounds =
+        pcc_evaluate::surrogate::MarginalBounds { falsely_marginal: 1, marginal: [0.0, 0.125], unstable: [0.5, 0.875] };
+    let mut withheld = pcc_evaluate::surrogate::Certificate { marginal: Some(bounds), ..made.clone() };
+    withheld.strata.as_mut().unwrap().if_errors_fall_off.bound =
+        pcc_evaluate::surrogate::AssumedBound::Withheld(pcc_evaluate::surrogate::Withheld::Marginal);
+    for (certificates, minor) in [(vec![independent.clone()], 1), (vec![independent, made, withheld], 3)] {
+        surrogate.certificates = certificates;
+        let bytes = encode(&surrogate, Format::Binary).unwrap();
+        let found = document(&bytes);
+        let json: Value = serde_json::from_slice(&encode(&surrogate, Format::Json).unwrap()).unwrap();
+        assert_eq!(found, json);
+        assert_eq!(found["format"]["minor"], minor);
+        assert_eq!(decode(&bytes).unwrap().surrogate, surrogate);
+    }
 }
 
 #[test]

@@ -84,16 +84,17 @@ fn programs_are_built_evaluated_and_certified() {
 
     // Runs of a certificate are recorded, too, and used again.
     output(folder.path(), &["certify", "program.pcc", "--study", "study.toml", "-n", "20"]);
-    assert_eq!(started(folder.path()).len(), runs + 20);
+    // 20 outside the rare set, 7 in the layer, 50 inside.
+    assert_eq!(started(folder.path()).len(), runs + 77);
     output(
         folder.path(),
         &["certify", "program.pcc", "--study", "study.toml", "-n", "20", "-o", "twice.pcc", "--seed", "2"],
     );
-    assert_eq!(started(folder.path()).len(), runs + 40);
+    assert_eq!(started(folder.path()).len(), runs + 2 * 77);
     let compared = output(folder.path(), &["compare", "program.pcc", "--study", "study.toml", "-n", "30"]);
     assert!(in_one_line(&compared).contains("misclassified 0 %"), "{compared}");
     output(folder.path(), &["compare", "program.pcc", "--study", "study.toml", "-n", "30", "--resume"]);
-    assert_eq!(started(folder.path()).len(), runs + 70, "the second comparison ran nothing");
+    assert_eq!(started(folder.path()).len(), runs + 2 * 77 + 30, "the second comparison ran nothing");
 }
 
 #[test]
@@ -565,6 +566,7 @@ fn failures_count_as_disagreement_both_ways_if_asked_for() {
     ends_at_the_first(&certify);
     let said = output(folder.path(), &[&certify[..], &["--failures", "count", "--seed", "2"]].concat());
     assert!(said.contains("counted as disagreement both ways"), "{said}");
+    assert!(crate::support::in_one_line(&said).contains("if errors fall off withheld: runs failed"), "{said}");
     let compare = ["compare", "program.pcc", "--study", "study.toml", "-n", "40"];
     ends_at_the_first(&compare);
     let said = output(folder.path(), &[&compare[..], &["--failures", "count"]].concat());

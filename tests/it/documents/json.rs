@@ -11,7 +11,7 @@ use std::path::Path;
 const NO_FIELDS: [&str; 5] = ["false", "true", "null", "reference", "certify"];
 
 /// They are there only where model runs failed.
-const ONLY_AFTER_FAILURES: [&str; 2] = ["unanswered_proportion", "bounds"];
+const ONLY_AFTER_FAILURES: [&str; 3] = ["unanswered_proportion", "bounds", "withheld"];
 
 /// Headings of the page, each with commands whose documents together have its fields.
 const COMMANDS: [(&str, &[&str]); 6] = [
@@ -27,7 +27,10 @@ const COMMANDS: [(&str, &[&str]); 6] = [
         ],
     ),
     ("compare", &["compare clutch.pcc --study surrogates/clutch-r3.toml -n 1e3"]),
-    ("certify", &["certify clutch.pcc --study surrogates/clutch-r3.toml -m 100"]),
+    (
+        "certify",
+        &["certify clutch.pcc --study surrogates/clutch-r3.toml -m 100", "certify clutch.pcc --target-width 0.01"],
+    ),
     ("inspect", &["inspect clutch.pcc"]),
     ("design", &["design table.toml --emit rows.csv"]),
 ];

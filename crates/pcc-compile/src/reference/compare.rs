@@ -2,14 +2,15 @@
 
 use super::direct_computations::{ReferenceError, check_problem, for_each_chunk, surrogate_block};
 use super::matching::{Matching, by_output};
+use super::verdicts::{Judged, Verdicts};
 use crate::campaign::Campaign;
 use crate::mechanics::spectrum::{Spectrum, components_of};
 use nalgebra::Complex;
-use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind, Verdict};
+use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind};
 use pcc_evaluate::evaluation::Plan;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::probability::random::Purpose;
-use pcc_evaluate::probability::statistics::{DiscordantCounts, Moments, Proportion};
+use pcc_evaluate::probability::statistics::{Moments, Proportion};
 use pcc_evaluate::surrogate::Surrogate;
 
 /// Standard deviations below this share of the mean, and both below this share of a component's scale, are rounding.
@@ -48,114 +49,6 @@ impl ComponentError {
             return Some(0.0);
         }
         relative_error_percent(self.surrogate.variance(), self.model.variance())
-    }
-}
-
-/// Verdicts of surrogate and model on the same points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Verdicts {
-    /// Points by what the surrogate says, stable, marginal or unstable, and in each by what the model says.
-    counts: [[u64; 3]; 3],
-    /// Points at which the model failed, by what the surrogate says: disagreement, whatever it is.
-    failed: [u64; 3],
-}
-
-/// What the model says of a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Judged {
-    /// The largest excess.
-    pub excess: f64,
-    /// Where that is zero, what it cannot be told from.
-    pub error: f64,
-}
-
-impl Judged {
-    pub fn of(spectrum: &Spectrum) -> Self {
-        Self { excess: spectrum.top().excess, error: spectrum.marginal_error().unwrap_or(0.0) }
-    }
-}
-
-/// Stable, marginal or unstable, in the order of [`Verdicts`].
-fn class(excess: f64) -> usize {
-    match Verdict::of(excess, 0.0) {
-        Verdict::Stable => 0,
-        Verdict::Marginal => 1,
-        Verdict::Flutter | Verdict::Divergence => 2,
-    }
-}
-
-impl Verdicts {
-    /// Counts a point, given the largest excess by the surrogate and by the model, and what the model's is told from
-    /// zero by: where the model cannot tell, a smaller excess of the surrogate is no disagreement.
-    fn add(&mut self, surrogate: f64, model: f64, rounding: f64) {
-        let is_rounding = model == 0.0 && surrogate.abs() <= rounding;
-        let (said, truth) = (class(surrogate), class(model));
-        self.counts[if is_rounding { truth } else { said }][truth] += 1;
-    }
-
-    /// Counts a point by what each says, and nothing forgiven: what bounds are made of.
-    fn add_strictly(&mut self, surrogate: f64, model: f64) {
-        self.counts[class(surrogate)][class(model)] += 1;
-    }
-
-    /// Counts the points of a block.
-    fn classify(&mut self, model: impl Iterator<Item = Judged>, block: &Block) {
-        model.zip(&block.excess).for_each(|(model, &excess)| self.add(excess, model.excess, model.error));
-    }
-
-    /// The same, strictly.
-    pub(super) fn classify_strictly(&mut self, model: impl Iterator<Item = f64>, block: &Block) {
-        model.zip(&block.excess).for_each(|(model, &excess)| self.add_strictly(excess, model));
-    }
-
-    /// Counts points at which the model failed, with the surrogate there.
-    pub(super) fn count_failures(&mut self, block: &Block) {
-        block.excess.iter().for_each(|&excess| self.failed[class(excess)] += 1);
-    }
-
-    /// Points at which the model failed.
-    pub fn failed(&self) -> u64 {
-        self.failed.iter().sum()
-    }
-
-    fn surrogate(&self, class: usize) -> u64 {
-        self.counts[class].iter().sum()
-    }
-
-    fn model(&self, class: usize) -> u64 {
-        self.counts.iter().map(|row| row[class]).sum()
-    }
-
-    /// Points that the surrogate puts into a class and the model does not, and the other way round.
-    fn discordant(&self, class: usize) -> DiscordantCounts {
-        let both = self.counts[class][class];
-        DiscordantCounts {
-            samples: self.counts.iter().flatten().sum::<u64>() + self.failed(),
-            falsely_claimed: self.surrogate(class) - both,
-            falsely_denied: self.model(class) - both,
-            claimed_unknown: self.failed[class],
-            denied_unknown: self.failed() - self.failed[class],
-        }
-    }
-
-    /// Of stable points.
-    pub fn of_stable(&self) -> DiscordantCounts {
-        self.discordant(0)
-    }
-
-    /// Of marginal points.
-    pub fn of_marginal(&self) -> DiscordantCounts {
-        self.discordant(1)
-    }
-
-    /// Of unstable points.
-    pub fn of_unstable(&self) -> DiscordantCounts {
-        self.discordant(2)
-    }
-
-    /// Whether either of the two calls some point marginal.
-    pub fn has_marginal(&self) -> bool {
-        self.surrogate(1) + self.model(1) > 0
     }
 }
 

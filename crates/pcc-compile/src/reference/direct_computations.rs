@@ -23,6 +23,27 @@ pub enum ReferenceError {
     /// Nothing to compute.
     #[error("no samples were asked for; use at least 1")]
     NoSamples,
+    /// A certificate on so few runs says nothing.
+    #[error("{runs} model runs are too few for a certificate; use at least {least}")]
+    TooFewRuns {
+        /// Runs that were asked for.
+        runs: u64,
+        /// The fewest that are made.
+        least: u64,
+    },
+    /// No number of runs makes a bound so narrow.
+    #[error(
+        "no number of model runs makes a bound {width} wide: by {samples} samples of the surrogate its own share is known \
+         to {known:.1e} only; use a larger width"
+    )]
+    TooNarrow {
+        /// The width that was asked for.
+        width: f64,
+        /// Samples of the surrogate.
+        samples: u64,
+        /// How far the upper end of its own share lies above it.
+        known: f64,
+    },
     /// The model could not be set up.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -80,39 +101,75 @@ pub(super) fn for_each_chunk(
     observer: &dyn Observer,
     mut consume: impl FnMut(&[Vec<f64>], &[Run], &[Vec<f64>]) -> Result<(), ReferenceError>,
 ) -> Result<(), ReferenceError> {
-    if samples == 0 {
+    let inputs = &campaign.study.inputs;
+    let point = |index| {
+        let mut point = vec![0.0; inputs.dimension()];
+        random_point(inputs, seed, purpose, index, &mut point);
+        point
+    };
+    for_each_chunk_of(campaign, samples, point, observer, |chunk| consume(&chunk.points, &chunk.runs, &chunk.failed))
+}
+
+/// Points with what the model answered.
+pub(super) struct Chunk {
+    /// Standardized points with an answer.
+    pub points: Vec<Vec<f64>>,
+    /// Their numbers.
+    pub numbers: Vec<u64>,
+    /// Their runs.
+    pub runs: Vec<Run>,
+    /// Standardized points at which runs failed.
+    pub failed: Vec<Vec<f64>>,
+    /// Their numbers.
+    pub failed_numbers: Vec<u64>,
+}
+
+/// The same at `count` standardized points that `point` gives by number.
+pub(super) fn for_each_chunk_of(
+    campaign: Campaign<'_>,
+    count: u64,
+    point: impl Fn(u64) -> Vec<f64>,
+    observer: &dyn Observer,
+    mut consume: impl FnMut(&Chunk) -> Result<(), ReferenceError>,
+) -> Result<(), ReferenceError> {
+    if count == 0 {
         return Err(ReferenceError::NoSamples);
     }
     let study = campaign.study;
     // Whether a system is stable takes no numbers of modes.
     let mut runner = Runner::new(campaign)?.without_ranks();
     let mut rigid_body_modes = usize::MAX;
-    observer.begin("model runs", samples);
-    for start in (0..samples).step_by(CHUNK as usize) {
-        let standardized: Vec<Vec<f64>> = (start..samples.min(start + CHUNK))
-            .map(|index| {
-                let mut point = vec![0.0; study.inputs.dimension()];
-                random_point(&study.inputs, seed, purpose, index, &mut point);
-                point
-            })
-            .collect();
+    observer.begin("model runs", count);
+    for start in (0..count).step_by(CHUNK as usize) {
+        let numbers = start..count.min(start + CHUNK);
+        let standardized: Vec<Vec<f64>> = numbers.clone().map(&point).collect();
         let physical: Vec<Vec<f64>> = standardized.iter().map(|point| study.inputs.physical(point)).collect();
         let found = match campaign.counts_failures {
             true => runner.run_counting(&physical, observer)?,
             false => runner.run(&physical, observer)?.into_iter().map(Some).collect(),
         };
-        let (mut points, mut runs, mut failed) = (Vec::new(), Vec::new(), Vec::new());
-        for (point, run) in standardized.into_iter().zip(found) {
+        let mut chunk = Chunk {
+            points: Vec::new(),
+            numbers: Vec::new(),
+            runs: Vec::new(),
+            failed: Vec::new(),
+            failed_numbers: Vec::new(),
+        };
+        for ((point, run), number) in standardized.into_iter().zip(found).zip(numbers) {
             match run {
                 Some(run) => {
-                    points.push(point);
-                    runs.push(run);
+                    chunk.points.push(point);
+                    chunk.numbers.push(number);
+                    chunk.runs.push(run);
                 }
-                None => failed.push(point),
+                None => {
+                    chunk.failed.push(point);
+                    chunk.failed_numbers.push(number);
+                }
             }
         }
-        rigid_body_modes = agree_on_rigid_body_motion(&mut runs, rigid_body_modes);
-        consume(&points, &runs, &failed)?;
+        rigid_body_modes = agree_on_rigid_body_motion(&mut chunk.runs, rigid_body_modes);
+        consume(&chunk)?;
     }
     observer.finish();
     Ok(())

@@ -6,8 +6,10 @@ mod direct_computations;
 mod matching;
 mod points;
 mod sample;
+mod strata;
+mod verdicts;
 
-pub use certify::certify_with_model;
+pub use certify::{LEAST_RUNS, RunsForWidth, RunsNeeded, certify_with_model, runs_for_width};
 pub use compare::{Comparison, ComponentError, compare_with_model};
 pub use direct_computations::{Reference, ReferenceError, check_problem, monte_carlo};
 pub use points::{PointAnswer, PointReference};

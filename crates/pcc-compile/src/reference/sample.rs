@@ -1,8 +1,9 @@
 //! Direct computations that are kept, so that many surrogates can be judged on the same points for the price of one.
 
-use super::compare::{Comparison, Judged, eigenvalue_errors};
+use super::compare::{Comparison, eigenvalue_errors};
 use super::direct_computations::{Ranks, ReferenceError, for_each_chunk, surrogate_block};
 use super::matching::Matching;
+use super::verdicts::Judged;
 use crate::campaign::Campaign;
 use crate::mechanics::spectrum::{Modes, Spectrum, Target};
 use crate::study::Study;

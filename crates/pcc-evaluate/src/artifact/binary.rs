@@ -1,8 +1,9 @@
 //! Bodies of binary sections: bincode 2, little-endian, fixed-width integers. The only file that uses bincode.
 
+use super::certificates::AnyCertificates;
 use super::error::{ReadError, WriteError};
 use super::v1::Document;
-use super::v2::{AnyCertificates, AnyOutputs};
+use super::v2::AnyOutputs;
 use crate::foundation::sha256;
 use bincode::config::{Configuration, Fixint, Limit, LittleEndian, standard};
 use serde::Serialize;

@@ -3,9 +3,10 @@
 use super::binary::{
     CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections,
 };
+use super::certificates::AnyCertificates;
 use super::error::{ReadError, WriteError};
 use super::v1::{Document, FormatVersion};
-use super::v2::{AnyCertificates, AnyOutputs};
+use super::v2::AnyOutputs;
 use super::version::{Compatibility, MAJOR, compatibility};
 use serde::de::DeserializeOwned;
 

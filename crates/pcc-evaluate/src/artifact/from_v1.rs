@@ -3,13 +3,13 @@
 use super::error::ReadError;
 use super::inputs::close;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
-use super::{descriptions, domain, inputs as section_2, v1, v2};
+use super::{certified, descriptions, domain, inputs as section_2, v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace};
 use crate::surrogate::{
-    Band, Certificate, Counts, Coverage, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest,
-    Setting, SettingValue, StopReason, Surrogate, Training, VerdictBasis,
+    Band, Counts, Coverage, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue,
+    StopReason, Surrogate, Training, VerdictBasis,
 };
 
 /// Degrees above this are refused, so that a forged index cannot exhaust memory.
@@ -51,7 +51,7 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
         training: training(document.training)?,
         decision: decision(document.decision)?,
         self_test,
-        certificates: certificates(document.certificates)?,
+        certificates: certified::certificates(document.certificates)?,
         verdict: verdict(document.verdict)?,
     })
 }
@@ -333,48 +333,5 @@ fn self_test(section: v1::SelfTest, inputs: &InputSpace, components: usize) -> R
         components: section.components,
         max_re: section.max_re,
         tolerance: section.tolerance,
-    })
-}
-
-fn certificates(section: Option<v2::AnyCertificates>) -> Result<Vec<Certificate>, ReadError> {
-    let Some(section) = section else { return Ok(Vec::new()) };
-    let certificates = section.into_latest();
-    ensure("certificates", !certificates.is_empty(), || "the section is there but empty".to_owned())?;
-    certificates.into_iter().map(certificate).collect()
-}
-
-fn certificate(certificate: v2::Certificate) -> Result<Certificate, ReadError> {
-    let v2::Certificate { level, lower, upper, samples, .. } = certificate;
-    let discordant = certificate.falsely_stable.checked_add(certificate.falsely_unstable);
-    let discordant = discordant.and_then(|discordant| discordant.checked_add(certificate.failed));
-    let is_bound = |lower: f64, upper: f64| 0.0 <= lower && lower <= upper && upper <= 1.0;
-    let are_bounds = |bounds: &v2::MarginalBounds| {
-        is_bound(bounds.marginal_lower, bounds.marginal_upper)
-            && is_bound(bounds.unstable_lower, bounds.unstable_upper)
-            && bounds.falsely_marginal <= samples
-    };
-    let sensible = 0.0 < level
-        && level < 1.0
-        && is_bound(lower, upper)
-        && discordant.is_some_and(|discordant| discordant <= samples)
-        && certificate.marginal.as_ref().is_none_or(are_bounds)
-        && is_hash(&certificate.problem_hash);
-    ensure("certificates", sensible, || "level, bound, counts or hash are out of range".to_owned())?;
-    Ok(Certificate {
-        seed: certificate.seed,
-        samples,
-        scheme: certificate.scheme,
-        falsely_stable: certificate.falsely_stable,
-        falsely_unstable: certificate.falsely_unstable,
-        failed: certificate.failed,
-        level,
-        lower,
-        upper,
-        marginal: certificate.marginal.map(|bounds| MarginalBounds {
-            falsely_marginal: bounds.falsely_marginal,
-            marginal: [bounds.marginal_lower, bounds.marginal_upper],
-            unstable: [bounds.unstable_lower, bounds.unstable_upper],
-        }),
-        problem_hash: certificate.problem_hash,
     })
 }

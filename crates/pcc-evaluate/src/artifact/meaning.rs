@@ -1,5 +1,6 @@
 //! Checks that need no domain type: every number finite, and small helpers to say what is wrong.
 
+use super::certificates::{self, AnyCertificates};
 use super::error::ReadError;
 use super::v1::{self, Document};
 use super::v2;
@@ -20,7 +21,7 @@ pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
                 .certificates
                 .iter()
                 .cloned()
-                .flat_map(v2::AnyCertificates::into_latest)
+                .flat_map(AnyCertificates::into_latest)
                 .flat_map(certificate)
                 .collect(),
         ),
@@ -96,11 +97,22 @@ fn self_test(self_test: &v1::SelfTest) -> Vec<f64> {
     lists.chain(&self_test.max_re).copied().chain([self_test.tolerance]).collect()
 }
 
-fn certificate(certificate: v2::Certificate) -> Vec<f64> {
+fn certificate(certificate: certificates::Certificate) -> Vec<f64> {
     let others = certificate.marginal.iter().flat_map(|bounds| {
         [bounds.marginal_lower, bounds.marginal_upper, bounds.unstable_lower, bounds.unstable_upper]
     });
-    [certificate.level, certificate.lower, certificate.upper].into_iter().chain(others).collect()
+    let own = [certificate.level, certificate.lower, certificate.upper];
+    own.into_iter().chain(others).chain(certificate.strata.iter().flat_map(strata)).collect()
+}
+
+fn strata(strata: &certificates::Strata) -> Vec<f64> {
+    let assumed = match strata.assumed {
+        certificates::Assumed::Upper(upper) => upper,
+        certificates::Assumed::Withheld(_) => 0.0,
+    };
+    let own =
+        [strata.side_level, strata.rare_lower, strata.rare_upper, strata.layer_depth, strata.largest_error, assumed];
+    own.into_iter().chain(strata.thinning.iter().map(|tail| tail.error)).collect()
 }
 
 fn verdict(verdict: &v2::Verdict) -> Vec<f64> {

@@ -5,6 +5,8 @@
 //! with a surrogate in which everything holds. Equal surrogates give equal bytes.
 
 mod binary;
+pub mod certificates;
+mod certified;
 mod container;
 mod descriptions;
 mod domain;

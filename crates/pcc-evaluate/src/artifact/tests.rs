@@ -1,5 +1,6 @@
 //! One test per way a file can be wrong, in the order in which readers find them.
 
+use super::certificates::AnyCertificates;
 use super::error::{ReadError, WriteError};
 use super::{Format, binary, container, decode, encode, from_v1, json, to_v1, v1, v2};
 use crate::components::{Margin, OutputKind};
@@ -7,6 +8,7 @@ use crate::surrogate::{Band, Certificate, MarginalBounds, Surrogate, VerdictBasi
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
+mod certificates;
 mod dependence;
 mod descriptions;
 mod domain;
@@ -423,7 +425,7 @@ fn histories_that_make_no_sense() {
     assert_eq!(section_of(meaning(|d| d.decision.proportion_error = Some(-1.0))), "decision");
     assert_eq!(section_of(meaning(|d| d.self_test.tolerance = 0.0)), "self_test");
     assert_eq!(section_of(meaning(|d| d.self_test.points[0].push(0.0))), "self_test");
-    let empty = v2::AnyCertificates::V1(v1::Certificates { certificates: Vec::new() });
+    let empty = AnyCertificates::V1(v1::Certificates { certificates: Vec::new() });
     assert_eq!(section_of(meaning(|d| d.certificates = Some(empty))), "certificates");
 }
 
@@ -441,6 +443,7 @@ fn certificates_survive_and_stay_outside_the_content_id() {
         lower: 0.18,
         upper: 0.22,
         marginal: None,
+        strata: None,
         problem_hash: SURROGATE.provenance.problem_hash.clone(),
     });
     let bounds = MarginalBounds { falsely_marginal: 1, marginal: [0.1, 0.2], unstable: [0.5, 0.75] };

@@ -3,12 +3,10 @@
 use super::error::WriteError;
 use super::meaning::not_finite;
 use super::version::{MAJOR, minor};
-use super::{binary, descriptions, domain, inputs, v1, v2};
+use super::{binary, certified, descriptions, domain, inputs, v1, v2};
 use crate::components::{Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh};
-use crate::surrogate::{
-    Band, Certificate, LeaveOut, MarginalBounds, SettingValue, StopReason, Surrogate, VerdictBasis,
-};
+use crate::surrogate::{Band, LeaveOut, SettingValue, StopReason, Surrogate, VerdictBasis};
 use std::collections::HashMap;
 
 pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError> {
@@ -34,7 +32,7 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
             max_re: surrogate.self_test.max_re.clone(),
             tolerance: surrogate.self_test.tolerance,
         },
-        certificates: certificates(&surrogate.certificates),
+        certificates: certified::section(&surrogate.certificates),
         verdict: verdict(surrogate.verdict),
         coverage: surrogate.coverage.as_ref().map(|coverage| v2::Coverage {
             answered: coverage.answered.clone(),
@@ -222,28 +220,4 @@ fn verdict(verdict: VerdictBasis) -> Option<v2::Verdict> {
         is_self_adjoint: verdict.is_self_adjoint,
     };
     (verdict != VerdictBasis::default()).then_some(stored)
-}
-
-fn certificates(certificates: &[Certificate]) -> Option<v2::AnyCertificates> {
-    let bounds = |bounds: MarginalBounds| v2::MarginalBounds {
-        falsely_marginal: bounds.falsely_marginal,
-        marginal_lower: bounds.marginal[0],
-        marginal_upper: bounds.marginal[1],
-        unstable_lower: bounds.unstable[0],
-        unstable_upper: bounds.unstable[1],
-    };
-    let certificate = |certificate: &Certificate| v2::Certificate {
-        seed: certificate.seed,
-        samples: certificate.samples,
-        scheme: certificate.scheme.clone(),
-        falsely_stable: certificate.falsely_stable,
-        falsely_unstable: certificate.falsely_unstable,
-        level: certificate.level,
-        lower: certificate.lower,
-        upper: certificate.upper,
-        problem_hash: certificate.problem_hash.clone(),
-        marginal: certificate.marginal.map(bounds),
-        failed: certificate.failed,
-    };
-    (!certificates.is_empty()).then(|| v2::AnyCertificates::of(certificates.iter().map(certificate).collect()))
 }

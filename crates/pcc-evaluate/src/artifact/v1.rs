@@ -7,7 +7,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::v2::{AnyCertificates, AnyOutputs, Coverage, Descriptions, Domain, Verdict};
+use super::certificates::AnyCertificates;
+use super::v2::{AnyOutputs, Coverage, Descriptions, Domain, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -17,7 +17,7 @@ pub const MAJOR: u16 = 1;
 /// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
 ///   the search for an expansion ended that full expansions have.
 /// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10; section 9 in
-///   version 2, with bounds of all shares; a search that ended because errors no longer fell; sections 11 to 13; laws
+///   version 2, with bounds of all shares and strata; a search that ended because errors no longer fell; sections 11 to 13; laws
 ///   other than the uniform one in section 2, and dependence.
 pub const MINOR: u16 = 3;
 
@@ -30,7 +30,7 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
     let needs_2 = surrogate.mesh.elements().len() > 1 || surrogate.expansions.iter().any(is_full);
     let has_clusters = surrogate.outputs.iter().any(|output| output.kind == OutputKind::Cluster);
     let bounds_all =
-        surrogate.certificates.iter().any(|certificate| certificate.marginal.is_some() || certificate.failed > 0);
+        surrogate.certificates.iter().any(|one| one.marginal.is_some() || one.failed > 0 || one.strata.is_some());
     let has_stalled = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
     let has_verdict = surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default();
     let has_more_sections = surrogate.coverage.is_some() || surrogate.inputs.has_descriptions();

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod analysis;
+mod certificate;
 mod coverage;
 mod evaluate;
 mod records;
@@ -10,10 +11,14 @@ mod trained_domain;
 
 pub use agreement::{Disagreement, PORTABLE_TOLERANCE};
 pub use analysis::FitQuality;
+pub use certificate::{
+    AssumedBound, Certificate, ErrorTail, FallingErrors, MarginalBounds, RareSide, SampledStrata, Strata, StratumRuns,
+    Withheld,
+};
 pub use coverage::Coverage;
 pub use records::{
-    Band, Certificate, Counts, Decision, Expansion, LeaveOut, MarginalBounds, Provenance, Quantile, SelfTest, Setting,
-    SettingValue, StopReason, Training, VerdictBasis,
+    Band, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue, StopReason,
+    Training, VerdictBasis,
 };
 pub use sobol::SobolIndices;
 pub use trained_domain::TrainedDomain;

@@ -3,7 +3,6 @@
 use crate::components::{Margin, Top, beyond_rounding, spectral_abscissa};
 use crate::polynomials::IndexSet;
 use num_complex::Complex;
-use serde::Serialize;
 
 /// Where a surrogate comes from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -269,46 +268,4 @@ pub struct SelfTest {
     pub max_re: Vec<f64>,
     /// Largest difference allowed, relative to max(1, |expected|).
     pub tolerance: f64,
-}
-
-/// Verified bounds of the marginal and of the unstable share, each at the level of the certificate.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct MarginalBounds {
-    /// Points that the surrogate calls marginal and the model does not.
-    pub falsely_marginal: u64,
-    /// Lower and upper end of the bound on the marginal share.
-    pub marginal: [f64; 2],
-    /// Of the bound on the unstable share.
-    pub unstable: [f64; 2],
-}
-
-/// A verified bound on the stability proportion. Reports serialise it; surrogate files have a type of their own.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Certificate {
-    /// Seed of its points.
-    pub seed: u64,
-    /// Number of fresh model runs.
-    pub samples: u64,
-    /// How the points were drawn.
-    pub scheme: String,
-    /// Points that the surrogate calls stable and the model does not.
-    pub falsely_stable: u64,
-    /// Points that the model calls stable and the surrogate does not.
-    pub falsely_unstable: u64,
-    /// Points at which the model failed; the bound holds whatever it would have answered there.
-    pub failed: u64,
-    /// Confidence level.
-    pub level: f64,
-    /// Lower end of the bound on the stability proportion.
-    pub lower: f64,
-    /// Upper end.
-    pub upper: f64,
-    /// Bounds of the other shares, where some points are neither stable nor unstable.
-    #[serde(flatten)]
-    pub marginal: Option<MarginalBounds>,
-    /// `pcc_compile::study::Study::problem_hash` of the model that was run.
-    #[serde(skip_serializing)]
-    pub problem_hash: String,
 }

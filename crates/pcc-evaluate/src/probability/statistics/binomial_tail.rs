@@ -68,6 +68,15 @@ fn bisect(mut inside: f64, mut outside: f64, holds: impl Fn(f64) -> bool) -> f64
     inside
 }
 
+/// The probability of `hits` or more in so many trials with this chance, which is neither tiny nor close to 1.
+pub(super) fn probability_of_at_least(hits: u64, samples: u64, chance: f64) -> f64 {
+    match samples.saturating_sub(hits) {
+        _ if hits == 0 => 1.0,
+        0 => chance.powf(hits as f64),
+        misses => upper_tail(hits as f64, misses as f64, Chance { hit: chance, miss: 1.0 - chance }),
+    }
+}
+
 /// P(X ≥ hits) of a binomial X; with a hit and a miss at least.
 fn upper_tail(hits: f64, misses: f64, chance: Chance) -> f64 {
     let Chance { hit, miss } = chance;
