@@ -15,7 +15,7 @@ const ONLY_AFTER_FAILURES: [&str; 3] = ["unanswered_proportion", "bounds", "with
 
 /// Headings of the page, each with commands whose documents together have its fields.
 const COMMANDS: [(&str, &[&str]); 6] = [
-    ("build", &["build surrogates/clutch-r3.toml -o clutch.pcc"]),
+    ("build", &["build surrogates/clutch-r3.toml -o clutch.pcc", "build dependent.toml -o dependent.pcc"]),
     (
         "eval and reference",
         &[
@@ -24,16 +24,24 @@ const COMMANDS: [(&str, &[&str]); 6] = [
             "build normal.toml -o normal.pcc",
             "eval normal.pcc -n 1e4",
             "eval normal.pcc --points points.csv --out results.csv",
+            "eval dependent.pcc -n 1e4",
         ],
     ),
-    ("compare", &["compare clutch.pcc --study surrogates/clutch-r3.toml -n 1e3"]),
+    ("compare", &["compare dependent.pcc --study dependent.toml -n 1e3"]),
     (
         "certify",
         &["certify clutch.pcc --study surrogates/clutch-r3.toml -m 100", "certify clutch.pcc --target-width 0.01"],
     ),
-    ("inspect", &["inspect clutch.pcc"]),
+    ("inspect", &["inspect clutch.pcc", "inspect dependent.pcc"]),
     ("design", &["design table.toml --emit rows.csv"]),
 ];
+
+/// Makes inputs of the clutch depend on each other.
+const DEPENDENCE: &str = r#"
+[dependence]
+kind = "gaussian-copula"
+spearman = [["mu", "k_p", 0.5]]
+"#;
 
 /// `design` is for models that something else runs.
 const TABLE: &str = r#"
@@ -88,6 +96,8 @@ fn listed_fields_are_printed() {
     for (name, content) in [("table.toml", TABLE), ("normal.toml", NORMAL), ("points.csv", "k_p\n16e6\n")] {
         std::fs::write(folder.path().join(name), content).unwrap();
     }
+    let dependent = std::fs::read_to_string(repository(study)).unwrap() + DEPENDENCE;
+    std::fs::write(folder.path().join("dependent.toml"), dependent).unwrap();
     let page = Page::read("docs/reference/json.md").lines.join("\n");
     for (title, commands) in COMMANDS {
         let section = page.split("\n## ").find(|section| section.lines().next() == Some(title)).unwrap();

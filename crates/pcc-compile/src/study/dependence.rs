@@ -154,7 +154,8 @@ pub enum DependenceError {
 }
 
 fn found(eigenvalue: &Option<f64>) -> String {
-    eigenvalue.map_or_else(String::new, |value| format!(" is {value:.3e}"))
+    let short = |value: f64| if value.abs() < 1e-3 { format!(" is {value:.1e}") } else { format!(" is {value:.4}") };
+    eigenvalue.map_or_else(String::new, short)
 }
 
 fn proposal(nearest: &Option<String>) -> String {
