@@ -54,7 +54,7 @@ impl Measure {
     }
 
     /// The way back.
-    fn from_scores(self, inputs: &InputSpace, [one, other]: [usize; 2], value: f64) -> f64 {
+    fn of_inputs(self, inputs: &InputSpace, [one, other]: [usize; 2], value: f64) -> f64 {
         let law = |input: usize| &inputs.inputs()[input].marginal;
         match self {
             Self::Spearman => 6.0 / PI * (0.5 * value).asin(),
@@ -175,13 +175,13 @@ impl Lines<'_> {
         let (measure, list) = match (spearman, pearson) {
             (Some(list), None) => (Measure::Spearman, list),
             (None, Some(list)) => (Measure::Pearson, list),
-            _ => return Err(StudyError::Dependence { place, cause: DependenceError::Lists }),
+            _ => return Err(StudyError::Dependence { place, cause: DependenceError::Lists.into() }),
         };
         let (mut pairs, mut of_scores) = (Vec::new(), Vec::new());
         for raw in list.get_ref() {
-            let refused = |cause| StudyError::Dependence {
+            let refused = |cause: DependenceError| StudyError::Dependence {
                 place: self.place(format!("dependence.{}", measure.name()), raw),
-                cause,
+                cause: cause.into(),
             };
             let (pair, score) = pair(measure, raw.get_ref(), &inputs, &pairs).map_err(refused)?;
             pairs.push(pair);
@@ -193,8 +193,8 @@ impl Lines<'_> {
         }
         pairs.sort_by_key(|pair| (pair.0, pair.1));
         let place = self.place(format!("dependence.{}", measure.name()), list);
-        let inputs =
-            with_copula(measure, inputs, &of_scores).map_err(|cause| StudyError::Dependence { place, cause })?;
+        let refused = |cause: DependenceError| StudyError::Dependence { place, cause: cause.into() };
+        let inputs = with_copula(measure, inputs, &of_scores).map_err(refused)?;
         Ok((Some(DependenceSettings { measure, pairs }), inputs))
     }
 }
@@ -263,7 +263,7 @@ fn contradiction(measure: Measure, inputs: &InputSpace, of_scores: &[(usize, usi
         let mut pairs = Vec::new();
         for (i, &one) in members.iter().enumerate() {
             for (k, &other) in members.iter().enumerate().skip(i + 1) {
-                let value = measure.from_scores(inputs, [one, other], near[(i, k)]);
+                let value = measure.of_inputs(inputs, [one, other], near[(i, k)]);
                 let rounded = (value * scale).round() / scale;
                 if rounded != 0.0 {
                     pairs.push(format!("[\"{}\", \"{}\", {rounded:?}]", names[one], names[other]));
@@ -277,7 +277,7 @@ fn contradiction(measure: Measure, inputs: &InputSpace, of_scores: &[(usize, usi
 
 /// Refuses a fit by quadrature.
 pub(super) fn refuse_quadrature(place: Place, method: &'static str) -> StudyError {
-    StudyError::Dependence { place, cause: DependenceError::Quadrature { method } }
+    StudyError::Dependence { place, cause: DependenceError::Quadrature { method }.into() }
 }
 
 #[cfg(test)]

@@ -321,7 +321,7 @@ pub enum StudyError {
         place: Place,
         /// Why.
         #[source]
-        cause: DependenceError,
+        cause: Box<DependenceError>,
     },
     /// The inputs do not form a space.
     #[error("{place}: {cause}")]
