@@ -35,7 +35,7 @@ pub use law::Source;
 pub(crate) use law::Transform;
 pub use marginal::{Marginal, Other, Polynomials};
 pub use measured::{LEAST_VALUES, Smoothing};
-pub use nataf::{pearson_of_scores, scores_of_pearson};
+pub use nataf::{PearsonError, pearson_of_scores, scores_of_pearson};
 pub use own_variable::OwnVariable;
 pub use parameters::Parameters;
 pub(crate) use pieces::Pieces;

@@ -12,6 +12,7 @@ use super::germ::Germ;
 use super::law::Transform;
 use super::marginal::Marginal;
 use super::normal_quantile::density;
+use thiserror::Error;
 
 /// Nodes from −16 to 16, where the density vanishes beside what laws grow by.
 const NODES: i32 = 64;
@@ -20,10 +21,30 @@ const STEP: f64 = 0.25;
 /// Steps of the search, which takes about ten.
 const MOST_STEPS: usize = 200;
 
+/// What the outermost nodes may add to a variance: beyond them lies about as much.
+const NEGLIGIBLE: f64 = 1e-13;
+
 /// Correlations of scores closer than this are one.
 const NARROW: f64 = 4.0 * f64::EPSILON;
 
-/// The correlation of inputs with these laws whose normal scores have the correlation `of_scores` ∈ \[−1, 1\].
+/// Why no correlation of normal scores gives inputs a correlation.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum PearsonError {
+    /// Inputs with these laws cannot have it.
+    #[error("inputs with these laws have correlations from {least} to {largest}")]
+    Impossible {
+        /// The least they can have.
+        least: f64,
+        /// The largest.
+        largest: f64,
+    },
+    /// Most of a variance lies where values practically never are.
+    #[error("a law is too wide for its correlations to be computed")]
+    TooWide,
+}
+
+/// The correlation of inputs with these laws whose normal scores have the correlation `of_scores` ∈ \[−1, 1\]; not a
+/// number if a law is too wide.
 ///
 /// # Examples
 ///
@@ -37,28 +58,37 @@ const NARROW: f64 = 4.0 * f64::EPSILON;
 /// # Ok::<(), pcc_evaluate::probability::inputs::MarginalError>(())
 /// ```
 pub fn pearson_of_scores(one: &Marginal, other: &Marginal, of_scores: f64) -> f64 {
-    if are_normal(one, other) { of_scores } else { Pair::new(one, other).pearson(of_scores) }
+    if are_normal(one, other) {
+        return of_scores;
+    }
+    let pair = Pair::new(one, other);
+    if pair.one.is_resolved && pair.other.is_resolved { pair.pearson(of_scores) } else { f64::NAN }
 }
 
 /// The correlation of normal scores that gives inputs with these laws the correlation `pearson`.
 ///
 /// # Errors
 ///
-/// The least and the largest correlation that inputs with these laws can have, if `pearson` is not between them.
-pub fn scores_of_pearson(one: &Marginal, other: &Marginal, pearson: f64) -> Result<f64, [f64; 2]> {
+/// [`PearsonError`], with the least and the largest correlation that inputs with these laws can have, if `pearson` is
+/// not between them.
+pub fn scores_of_pearson(one: &Marginal, other: &Marginal, pearson: f64) -> Result<f64, PearsonError> {
     if are_normal(one, other) {
-        return if pearson.abs() <= 1.0 { Ok(pearson) } else { Err([-1.0, 1.0]) };
+        let impossible = PearsonError::Impossible { least: -1.0, largest: 1.0 };
+        return if pearson.abs() <= 1.0 { Ok(pearson) } else { Err(impossible) };
     }
     if pearson == 0.0 {
         return Ok(0.0);
     }
     let pair = Pair::new(one, other);
+    if !(pair.one.is_resolved && pair.other.is_resolved) {
+        return Err(PearsonError::TooWide);
+    }
     let excess = |of_scores: f64| pair.pearson(of_scores) - pearson;
     let (mut lower, mut upper) = ((-1.0, excess(-1.0)), (1.0, excess(1.0)));
     // False for what is no number.
     let is_possible = lower.1 <= 0.0 && upper.1 >= 0.0;
     if !is_possible {
-        return Err([lower.1 + pearson, upper.1 + pearson]);
+        return Err(PearsonError::Impossible { least: pair.pearson(-1.0), largest: pair.pearson(1.0) });
     }
     // Regula falsi that halves the value of an end that stays (Dowell and Jarratt 1971, "Illinois").
     let mut stayed = 0;
@@ -102,6 +132,8 @@ struct Standard<'a> {
     law: &'a Marginal,
     mean: f64,
     deviation: f64,
+    /// Whether the nodes hold all of the variance.
+    is_resolved: bool,
 }
 
 fn nodes() -> impl Iterator<Item = (f64, f64)> {
@@ -110,13 +142,17 @@ fn nodes() -> impl Iterator<Item = (f64, f64)> {
 
 impl<'a> Standard<'a> {
     fn new(law: &'a Marginal) -> Self {
-        let raw = Self { law, mean: 0.0, deviation: 1.0 };
+        let raw = Self { law, mean: 0.0, deviation: 1.0, is_resolved: true };
         // About the median first, so that nothing is lost where a law is narrow.
         let median = raw.at(0.0);
         let shift: f64 = nodes().map(|(z, weight)| weight * (raw.at(z) - median)).sum();
         let mean = median + shift;
-        let square: f64 = nodes().map(|(z, weight)| weight * (raw.at(z) - mean).powi(2)).sum();
-        Self { law, mean, deviation: square.sqrt() }
+        let squares: Vec<f64> = nodes().map(|(z, weight)| weight * (raw.at(z) - mean).powi(2)).collect();
+        let square: f64 = squares.iter().sum();
+        // False for what is no number.
+        let is_small = |end: Option<&f64>| end.is_some_and(|&end| end <= NEGLIGIBLE * square);
+        let is_resolved = square > 0.0 && square.is_finite() && is_small(squares.first()) && is_small(squares.last());
+        Self { law, mean, deviation: square.sqrt(), is_resolved }
     }
 
     /// (x(z) − m)/s.
@@ -200,8 +236,15 @@ mod tests {
     fn what_no_scores_give_is_refused_with_what_is_possible() {
         let law = law("lognormal", &[("mean", 1.0), ("std", 1.0)]);
         // −e^(−σ²) to 1 for σ² = ln 2.
-        let [least, largest] = scores_of_pearson(&law, &law, -0.6).unwrap_err();
+        let Err(PearsonError::Impossible { least, largest }) = scores_of_pearson(&law, &law, -0.6) else { panic!() };
         assert!((least + 0.5).abs() < 1e-12 && (largest - 1.0).abs() < 1e-12);
+        for wide in [
+            self::law("lognormal", &[("mean", 1.0), ("cv", 1e12)]),
+            self::law("weibull", &[("shape", 1e-3), ("scale", 1.0)]),
+        ] {
+            assert_eq!(scores_of_pearson(&law, &wide, 0.1), Err(PearsonError::TooWide));
+            assert!(pearson_of_scores(&wide, &law, 0.1).is_nan());
+        }
         assert!(scores_of_pearson(&law, &law, -0.4999).unwrap() > -1.0);
         assert!(scores_of_pearson(&law, &law, f64::NAN).is_err());
     }

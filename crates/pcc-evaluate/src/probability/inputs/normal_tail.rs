@@ -1,9 +1,9 @@
 //! The tails of the standard normal law in vector lanes: the way back of the [quantile](super::normal_quantile).
 //!
-//! Beyond x ≥ 0 lies Q(x) = e^(−x²/2) P(t)/(1 + x) with t = (x − 5)/(x + 5) ∈ [−1, 1): P is a smooth function there
-//! (after Shepherd and Laframboise 1981, <https://doi.org/10.2307/2007728>), here the truncated Chebyshev series of
-//! degree 23, found with 40 digits and written by powers of t. Exponentials are computed here from fused operations,
-//! so that the tails have the same bits on every machine.
+//! Beyond x ≥ 0 lies Q(x) = e^(−x²/2) P(t)/(1 + x) with t = (x − 5)/(x + 5) ∈ [−1, 1). P is a smooth function there
+//! (after Shepherd and Laframboise 1981, <https://doi.org/10.1090/S0025-5718-1981-0595058-X>): here the truncated
+//! Chebyshev series of degree 23, found with 40 digits and written by powers of t. Exponentials are computed here from
+//! fused operations, so that the tails have the same bits on every machine.
 
 use std::f64::consts::LOG2_E;
 
