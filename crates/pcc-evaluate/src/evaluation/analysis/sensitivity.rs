@@ -97,8 +97,8 @@ impl Estimate {
 /// # Errors
 ///
 /// [`EvalError`]; [`EvalError::NotFinite`] also if |max Re λ| exceeds 10⁷⁵, whose powers are too large;
-/// [`EvalError::Dependent`] if inputs depend on each other, which [`shapley_effects`](super::shapley::shapley_effects)
-/// are for.
+/// [`EvalError::Dependent`] if inputs depend on each other, which
+/// [`shapley_effects`](crate::evaluation::shapley_effects) are for.
 ///
 /// # Examples
 ///
