@@ -3,6 +3,7 @@
 use super::pages::{self, Block, Page};
 use pcc_compile::study::Study;
 use std::collections::BTreeSet;
+use tempfile::TempDir;
 
 const REFERENCE: &str = "docs/reference/study-file.md";
 
@@ -68,13 +69,26 @@ fn printed_studies_are_valid() {
     let is_study =
         |block: &Block| block.text.starts_with("format = 1") && !block.comments.contains(&"not valid".to_owned());
     for (path, block) in blocks("toml").into_iter().filter(|(_, block)| is_study(block)) {
-        let study = Study::from_toml(&block.text).unwrap_or_else(|error| panic!("{path}: {}{error}", block.text));
+        let tables = tables_of(&path);
+        let study = Study::from_toml_in(&block.text, tables.path());
+        let study = study.unwrap_or_else(|error| panic!("{path}: {}{error}", block.text));
         kinds.insert(study.model.kind());
         if study.model.kind() == "matrices" {
             pcc_compile::compilation::build(&study, &pcc_evaluate::foundation::Silent).unwrap();
         }
     }
     assert_eq!(kinds.into_iter().collect::<Vec<_>>(), ["clutch", "command", "matrices", "table"]);
+}
+
+/// A folder with the tables that a page shows.
+fn tables_of(page: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (_, block) in blocks("csv").into_iter().filter(|(path, _)| path == page) {
+        if let Some(name) = block.comments.iter().find_map(|comment| comment.strip_prefix("file: ")) {
+            std::fs::write(folder.path().join(name), &block.text).unwrap();
+        }
+    }
+    folder
 }
 
 /// Tables that a page adds to a study are read behind one that has none of them.
