@@ -1,9 +1,8 @@
 //! What a build spent, and how good its surrogate is.
 
-use super::confidence::error_words;
 use super::fit::{FitReport, share_of_variance};
 use super::layout::{Facts, width, write_verdict, write_warnings};
-use super::numbers::significant;
+use super::smallest_share::{SmallestShare, estimated_error};
 use pcc_compile::campaign::Failure;
 use pcc_compile::compilation::BuiltFile;
 use pcc_compile::study::{DesignKind, Study};
@@ -44,8 +43,10 @@ pub struct BuildReport {
     pub rigid_body_modes: usize,
     /// Whether no mode decays but what grows elsewhere.
     pub undamped: bool,
-    /// Estimated relative error of the stability proportion, in percent; null if unknown.
+    /// Estimated error of the stability proportion, in percent of itself; null if unknown.
     pub estimated_error_percent: Option<f64>,
+    /// The smaller of the stable and the unstable share, with its estimated error; null if it was not judged.
+    pub smallest_share: Option<SmallestShare>,
     /// Fit of every component.
     pub components: Vec<FitReport>,
     /// What to know before trusting the surrogate.
@@ -131,10 +132,11 @@ impl BuildReport {
             warnings: FitReport::warnings_of(surrogate).into_iter().chain(runs.warning()).collect(),
             runs,
             estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
+            smallest_share: SmallestShare::of(surrogate),
             components: FitReport::of(surrogate),
             elapsed_seconds,
         };
-        report.verdict = report.verdict(error_words(surrogate));
+        report.verdict = report.verdict(estimated_error(surrogate));
         report
     }
 }
@@ -162,11 +164,11 @@ pub(super) fn level_list(levels: &[u64]) -> String {
 }
 
 impl BuildReport {
-    fn verdict(&self, error_words: &str) -> String {
+    fn verdict(&self, estimated_error: Option<String>) -> String {
         let runs = plural(self.direct_computations as usize, "model run");
         let derivatives = with_derivatives(self.runs_with_derivatives, self.direct_computations);
-        let error = match self.estimated_error_percent {
-            Some(error) => format!("estimated error {} % {}", significant(error, 2), error_words),
+        let error = match estimated_error {
+            Some(error) => format!("estimated error {error}"),
             None => "its error is not estimated".to_owned(),
         };
         format!("{} is built from {runs}{derivatives}; {error}.", self.study)

@@ -3,6 +3,7 @@
 use super::dependence::DependenceReport;
 use super::layout::{Facts, width, write_verdict, write_warnings};
 use super::numbers::{share, significant};
+use super::smallest_share::ComparedShare;
 use super::survey::LEVEL;
 use super::table::{Align, Table};
 use pcc_compile::reference::Comparison;
@@ -39,6 +40,8 @@ pub struct CompareReport {
     pub contradicts_surrogate: bool,
     /// Relative error of the share; null if the model is never stable and the surrogate sometimes is.
     pub relative_error_percent: Option<f64>,
+    /// The smaller of the stable and the unstable share, of those that occur.
+    pub smallest_share: ComparedShare,
     /// Points on whose stability the two disagree.
     pub misclassified_percent: f64,
     /// The model's share of marginal points.
@@ -122,6 +125,7 @@ impl CompareReport {
             proportion_surrogate: comparison.proportion_surrogate(),
             contradicts_surrogate: contradicts(surrogate, comparison),
             relative_error_percent: comparison.relative_error_percent(),
+            smallest_share: ComparedShare::of(comparison),
             misclassified_percent: comparison.misclassified_percent(),
             marginal_model: comparison.marginal()[0],
             marginal_surrogate: comparison.marginal()[1],
@@ -180,7 +184,8 @@ impl CompareReport {
 
     fn facts(&self) -> Facts {
         let mut facts = Facts::default();
-        let error = format!("{} % of the stable share", percentage(self.relative_error_percent));
+        let ComparedShare { name, relative_error_percent, .. } = self.smallest_share;
+        let error = format!("{} % of the {name} share", percentage(relative_error_percent));
         facts.add("stable, model", share(self.proportion_model), "");
         let error = match self.failed {
             0 => format!("relative error {error}"),

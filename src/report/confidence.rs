@@ -165,16 +165,6 @@ pub(super) fn is_of_modes_left_out(surrogate: &Surrogate) -> bool {
     surrogate.training.levels.len() == 1 || super::build::is_quadrature(surrogate)
 }
 
-/// What an estimated error is a share of, and where it is from.
-pub(super) fn error_words(surrogate: &Surrogate) -> &'static str {
-    match (surrogate.is_undamped(), is_of_modes_left_out(surrogate)) {
-        (true, true) => "of the share that is not unstable, by left-out modes",
-        (true, false) => "of the share that is not unstable, by left-out points",
-        (false, true) => "of the stable share, by left-out modes",
-        (false, false) => "of the stable share, by left-out points",
-    }
-}
-
 /// 1 − x without the noise of its last digits.
 fn complement(share: f64) -> f64 {
     const RESOLUTION: f64 = 1e15;

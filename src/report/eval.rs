@@ -8,6 +8,7 @@ use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::shapley::ShapleyReport;
+use super::smallest_share::SmallestShare;
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
 use pcc_compile::reference::Reference;
 use pcc_evaluate::components::{EigenvalueSummary, Label, Margin, Output, Summary};
@@ -76,6 +77,9 @@ pub struct EvalReport {
     /// How sure that is.
     #[serde(flatten)]
     pub confidence: Confidence,
+    /// The smaller of the stable and the unstable share as the build has judged it; null if that is unknown, for a part
+    /// of the domain, and for a model.
+    pub smallest_share: Option<SmallestShare>,
     /// Share of samples where the model did not answer, as far as its runs tell; absent if it answered everywhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unanswered_proportion: Option<f64>,
@@ -296,8 +300,9 @@ impl EvalReport {
         report.confidence =
             Confidence::new(surrogate, (stable, not_unstable), summary.stable_if_shifted, share.interval);
         report.confidence.basis.replicates = cell.replicates.len().max(1) as u64;
-        if !is_whole {
-            report.confidence.confine();
+        match is_whole {
+            true => report.smallest_share = SmallestShare::of(surrogate),
+            false => report.confidence.confine(),
         }
         let free = |name: &&str| !question.conditions.iter().any(|c| c.input == *name && c.lower == c.upper);
         report.sensitivity = found.sensitivities.as_ref().map(|indices| {
@@ -400,6 +405,7 @@ impl EvalReport {
             band: None,
             standard_error: Share::of_replicates(&[stable], LEVEL).standard_error,
             confidence: Confidence::of_model(stable),
+            smallest_share: None,
             unanswered_proportion: None,
             bounds: None,
             extrapolated_proportion: None,

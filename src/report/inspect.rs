@@ -2,12 +2,12 @@
 
 use super::build::{level_list, with_derivatives};
 use super::certify::CertificateReport;
-use super::confidence::error_words;
 use super::dependence::DependenceReport;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
 use super::layout::{Facts, width, write_verdict, write_warnings};
 use super::numbers::significant;
+use super::smallest_share::{SmallestShare, estimated_error};
 use super::table::{Align, Table};
 use pcc_evaluate::artifact::{Artifact, Format};
 use pcc_evaluate::evaluation::{Plan, self_test_difference};
@@ -88,11 +88,13 @@ pub struct InspectReport {
     pub warnings: Vec<String>,
     /// Terms after merging all components, and operations per evaluation.
     pub plan: PlanReport,
-    /// Estimated relative error of the stability proportion, in percent; null if unknown.
+    /// Estimated error of the stability proportion, in percent of itself; null if unknown.
     pub estimated_error_percent: Option<f64>,
-    /// What that is a share of, and where it is from.
+    /// The smaller of the stable and the unstable share, with its estimated error; null if the file does not say.
+    pub smallest_share: Option<SmallestShare>,
+    /// The estimated error in words.
     #[serde(skip)]
-    pub error_words: &'static str,
+    pub error_words: Option<String>,
     /// Largest relative difference between the self-test and this evaluator.
     pub self_test_difference: f64,
     /// Largest difference allowed.
@@ -188,7 +190,8 @@ impl InspectReport {
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
             estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
-            error_words: error_words(surrogate),
+            smallest_share: SmallestShare::of(surrogate),
+            error_words: estimated_error(surrogate),
             self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
             certificates: CertificateReport::of(surrogate),
@@ -198,8 +201,8 @@ impl InspectReport {
     }
 
     fn estimated_error(&self) -> String {
-        match self.estimated_error_percent {
-            Some(error) => format!("{} % {}", significant(error, 2), self.error_words),
+        match &self.error_words {
+            Some(error) => error.clone(),
             None if self.components.iter().all(|fit| fit.s2.is_none()) => {
                 "not estimated, because no point was left out".to_owned()
             }

@@ -69,17 +69,20 @@ impl SurrogatePage<'_> {
         if let Some(Validation { compare, .. }) = &self.validation {
             let checked = format!(
                 "The model was run at the first {} of these samples, too: of those {} are stable by the model and {} by the \
-                 surrogate, a relative error of {}, and {} % are misclassified.",
+                 surrogate, a relative error of {} of the {} share, and {} % are misclassified.",
                 count(compare.samples),
                 share(compare.proportion_model),
                 share(compare.proportion_surrogate),
                 compare
+                    .smallest_share
                     .relative_error_percent
                     .map_or("infinity".to_owned(), |error| format!("{} %", significant(error, 2))),
+                compare.smallest_share.name,
                 significant(compare.misclassified_percent, 2)
             );
-            let is_close = compare.relative_error_percent.is_some_and(|error| error < LARGE_ERROR_PERCENT)
-                && compare.misclassified_percent < LARGE_ERROR_PERCENT;
+            let is_close =
+                compare.smallest_share.relative_error_percent.is_some_and(|error| error < LARGE_ERROR_PERCENT)
+                    && compare.misclassified_percent < LARGE_ERROR_PERCENT;
             if is_close { page.paragraph(&checked) } else { page.warning(&checked) }
         }
     }

@@ -3,6 +3,7 @@
 use super::build::is_quadrature;
 use super::fit::FitReport;
 use super::numbers::significant;
+use super::smallest_share::SmallestShare;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::{Setting, SettingValue, StopReason, Surrogate};
 
@@ -161,7 +162,11 @@ impl FitReport {
         }
         warnings.extend(Self::distrusted(surrogate));
         warnings.extend(ended_early(surrogate).map(|reason| ended(reason, surrogate)));
+        let smallest = SmallestShare::of(surrogate);
         match (surrogate.decision.proportion_error, tolerance) {
+            (Some(_), _) if unlisted.is_none() && smallest.is_some() => {
+                warnings.extend(smallest.filter(SmallestShare::is_off).and_then(|share| share.warning()));
+            }
             (Some(error), tolerance) if unlisted.is_none() && error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; \
                  else raise design.maximum or choose another fit.method, and check with pcc compare or certify",

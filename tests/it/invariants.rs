@@ -100,9 +100,10 @@ fn methods_and_targets_combine_freely() {
 fn the_design_grows_until_the_decision_is_accurate() {
     let mut study = invariants_study(5);
     (study.design.initial, study.design.step) = (10, 10);
-    study.fit.proportion_tolerance = Some(0.05);
+    study.fit.proportion_tolerance = Some(0.025);
     let loose = build(&study);
-    study.fit.proportion_tolerance = Some(1e-4);
+    // Of a fifth, √(p (1 − p)) = 2p.
+    study.fit.proportion_tolerance = Some(5e-5);
     let tight = build(&study);
     assert_eq!(loose.training.levels[..2], [10, 20]);
     assert!(tight.training.levels.starts_with(&loose.training.levels));

@@ -5,7 +5,7 @@ use crate::cli::shared_options::{Failures, RecordingOptions, percentage, sample_
 use crate::cli::study_of::{StudyFile, runs_or_default};
 use crate::cli::messages::complain;
 use crate::cli::{Context, Ending, about};
-use crate::report::{CompareReport, significant};
+use crate::report::{ComparedShare, CompareReport, significant};
 use clap::Args;
 use pcc_compile::campaign::Campaign;
 use pcc_compile::reference::compare_with_model;
@@ -40,7 +40,7 @@ pub(in crate::cli) struct Options {
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
     pub seed: u64,
 
-    /// Exit with code 1 if the relative error of the stability proportion is larger
+    /// Exit with code 1 if the relative error of the smaller of the stable and unstable shares is larger
     #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
     pub max_error: Option<f64>,
 
@@ -64,12 +64,12 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         .map_err(|error| about(&path.display().to_string(), error))?;
     let report = CompareReport::new(&study.name, &surrogate, &comparison, options.seed, start.elapsed().as_secs_f64());
     context.print(&report)?;
+    let ComparedShare { name, relative_error_percent, .. } = report.smallest_share;
     match options.max_error {
-        Some(limit) if report.relative_error_percent.is_none_or(|error| error > limit) => {
-            let error = report
-                .relative_error_percent
-                .map_or("infinitely".to_owned(), |error| format!("by {} %", significant(error, 4)));
-            complain(&format!("the proportion is off {error}, more than --max-error {limit}"));
+        Some(limit) if relative_error_percent.is_none_or(|error| error > limit) => {
+            let error = relative_error_percent
+                .map_or("infinitely".to_owned(), |error| format!("by {} % of itself", significant(error, 4)));
+            complain(&format!("the {name} share is off {error}, more than --max-error {limit}"));
             Ok(Ending::CheckFailed)
         }
         _ => Ok(Ending::Done),

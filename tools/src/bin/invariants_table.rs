@@ -56,8 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     if asked(8) {
         let mut study = study("clutch-r8", NO_DERIVATIVES)?;
-        println!("values alone, proportion_tolerance = 1e-4, {} points", 10 * points);
-        study.fit.proportion_tolerance = Some(1e-4);
+        println!("values alone, proportion_tolerance = 5e-5, {} points", 10 * points);
+        study.fit.proportion_tolerance = Some(5e-5);
         all_hold &= rows(&study, 10 * points, (500, 0.03, 0.01))?;
         println!("eigenvalue components, ten times the runs of values alone");
         study = self::study("clutch-r8-eigenvalues", "")?;

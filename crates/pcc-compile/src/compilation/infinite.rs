@@ -5,8 +5,8 @@
 //! is predicted badly, this reciprocal is fitted by way of trial. If it is predicted well, and is zero at some of the
 //! points at which shares are judged, the eigenvalue goes to infinity there.
 
-use super::decision::{at_judged_points, judged_point};
 use super::group_fits::{Followed, GroupFits};
+use super::judged_points::{POINTS, at_judged_points, judged_point};
 use crate::mechanics::spectrum::{Group, Numbers, output};
 use crate::study::Study;
 use nalgebra::Complex;
@@ -65,7 +65,7 @@ fn infinite_in(
     }
     let alone = Numbers { modes: Vec::new(), reals: vec![1] };
     let surrogate = super::record::of_fits(study, &output(OutputKind::Closed, &alone, &[]), &[fit]);
-    let predicted = &at_judged_points(&surrogate, observer)?.components[0];
+    let predicted = &at_judged_points(&surrogate, POINTS, observer)?.components[0];
     let nearest = (0..predicted.len()).reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
     let zero = if is_one_sided { error } else { error.max(ZERO * spread) };
     let is_zero = |at: &usize| predicted[*at].abs() <= zero;

@@ -33,12 +33,15 @@ pub(super) fn remark(
     judgement: &Judgement,
     spent: Spent,
 ) -> String {
-    let error = match (judgement.decision.proportion_error, tolerance) {
-        (Some(error), Some(tolerance)) => {
-            format!("estimated error {} of the proportion, asked for {}", percent(error), percent(tolerance))
+    let error = match judgement.share.zip(judgement.error) {
+        Some((share, error)) => {
+            let stable = share.not_unstable;
+            let (name, rarer) = if stable <= 0.5 { ("stable", stable) } else { ("unstable", 1.0 - stable) };
+            let asked = tolerance
+                .map_or(String::new(), |tolerance| format!(", asked for ± {}", percent(tolerance * share.deviation())));
+            format!("{name} {} ± {}{asked}", percent(rarer), percent(error))
         }
-        (Some(error), None) => format!("estimated error {} of the proportion", percent(error)),
-        (None, _) => "error of the proportion not known yet".to_owned(),
+        None => "error of the proportion not known yet".to_owned(),
     };
     let waits = match slowest {
         Some((component, s2)) if s2.is_finite() => format!("; slowest: {}, S² {s2:.4}", component.name),
@@ -52,6 +55,9 @@ pub(super) fn remark(
 
 /// A share in percent, with two digits.
 fn percent(share: f64) -> String {
+    if share == 0.0 {
+        return "0 %".to_owned();
+    }
     let percent = 100.0 * share;
     let decimals = (1.0 - percent.max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{percent:.decimals$} %")
@@ -60,17 +66,17 @@ fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcc_evaluate::surrogate::Decision;
+    use crate::compilation::decision::JudgedShare;
 
     #[test]
     fn a_line_has_what_the_build_waits_for() {
-        let decision = Decision { proportion_error: Some(0.0012), ..Decision::default() };
-        let judgement = Judgement { decision, ..Judgement::default() };
+        let share = JudgedShare { not_unstable: 0.8, points: 50_000 };
+        let judgement = Judgement { share: Some(share), error: Some(0.0012), ..Judgement::default() };
         let component = Component { id: 0, name: "re_1".to_owned(), center: 0.0, scale: 1.0 };
         let spent = Spent { runs: Duration::from_millis(1500), fits: Duration::from_millis(240) };
         assert_eq!(
             remark((36, Some(1e-3)), Some((&component, 0.97)), &judgement, spent),
-            "36 runs: estimated error 0.12 % of the proportion, asked for 0.10 %; slowest: re_1, S² 0.9700; runs 1.5 s, fits 0.2 s"
+            "36 runs: unstable 20 % ± 0.12 %, asked for ± 0.040 %; slowest: re_1, S² 0.9700; runs 1.5 s, fits 0.2 s"
         );
     }
 }

@@ -5,7 +5,7 @@
 //! earlier one is part of that: the share of them that it calls otherwise than the model.
 
 use super::components::{ComponentFit, ComponentResult};
-use super::decision::{Before, Previous, judge};
+use super::decision::{Before, Judged, Previous, Purpose, judge};
 use super::evaluations::{Evaluations, Level, groups};
 use super::grouped::GroupedEigenvalues;
 use super::level_remark::{Spent, remark, slowest};
@@ -53,6 +53,15 @@ pub(super) fn build(
     }
 }
 
+/// A level that could be the result.
+struct Candidate {
+    surrogate: Surrogate,
+    /// Estimated error of the share, in points of probability.
+    error: Option<f64>,
+    /// What the file gives errors relative to.
+    reference: f64,
+}
+
 /// The levels so far.
 struct Levels<'a> {
     study: &'a Study,
@@ -65,7 +74,7 @@ struct Levels<'a> {
     previous: Option<Previous>,
     spent: Spent,
     /// Levels that could be the result.
-    candidates: Vec<Surrogate>,
+    candidates: Vec<Candidate>,
     /// Why no further level is worth its runs.
     early_end: Option<EarlyEnd>,
 }
@@ -116,13 +125,15 @@ impl<'a> Levels<'a> {
         let slowest = slowest(&level.outputs, &fitted);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let is_last = next.is_none() || self.stopping.needs_no_judgement(&results);
-        let before = self.previous.map(|previous| Before { previous, is_regrouped });
-        let judgement = judge(&surrogate, &results, &level.values, runs, before, is_last, observer)?;
+        let before = self.previous.as_ref().map(|previous| Before { previous, is_regrouped });
+        let tolerance = self.study.fit.proportion_tolerance;
+        let judged = Judged { surrogate: &surrogate, fitted: &results, values: &level.values, runs };
+        let mut judgement = judge(judged, before, Purpose { tolerance, is_last }, observer)?;
+        self.previous = judgement.previous.take();
         record::judged(&mut surrogate, &judgement, runs);
-        self.previous = judgement.previous;
         self.spent.fits += start.elapsed();
-        observer.remark(&remark((size, self.study.fit.proportion_tolerance), slowest, &judgement, self.spent));
-        self.stopping.note(judgement.reducible_error.or(judgement.decision.proportion_error), size);
+        observer.remark(&remark((size, tolerance), slowest, &judgement, self.spent));
+        self.stopping.note(judgement.reducible_error.or(judgement.error), size);
         let is_enough = self.stopping.holds(&results, &judgement);
         if next.is_none() && !is_enough && !self.study.fit.method.has_fixed_design() {
             self.early_end = self.stopping.end_at_largest_design(&results);
@@ -134,7 +145,8 @@ impl<'a> Levels<'a> {
             };
         };
         if self.fitting.refusal().is_none() {
-            self.candidates.push(surrogate);
+            let reference = judgement.share.map_or(1.0, |share| share.reference());
+            self.candidates.push(Candidate { surrogate, error: judgement.error, reference });
         }
         self.early_end = self.stopping.early_end(&results, self.fitting.work());
         self.sizes.push(next as u64);
@@ -143,11 +155,11 @@ impl<'a> Levels<'a> {
 
     /// The best level so far, the last of about equal ones, with what later runs say of its error.
     fn best(&mut self) -> Option<Surrogate> {
-        let known = std::mem::take(&mut self.candidates).into_iter().map(|mut surrogate| {
+        let known = std::mem::take(&mut self.candidates).into_iter().map(|candidate| {
+            let Candidate { mut surrogate, error, reference } = candidate;
             let denied = self.denied_by_later_runs(&surrogate);
-            let error = surrogate.decision.proportion_error;
             if denied > 0.0 {
-                surrogate.decision.proportion_error = Some(error.unwrap_or(0.0).max(denied));
+                surrogate.decision.proportion_error = Some(error.unwrap_or(0.0).max(denied) / reference);
             }
             (error.unwrap_or(f64::INFINITY).max(denied), surrogate)
         });

@@ -10,6 +10,7 @@ mod group_fits;
 mod grouped;
 mod grouping;
 mod infinite;
+mod judged_points;
 mod level_remark;
 mod levels;
 mod numbering;
@@ -19,6 +20,7 @@ mod stopping;
 #[cfg(test)]
 mod tests;
 mod to_file;
+mod trials;
 mod undecided;
 mod unseen;
 

@@ -108,9 +108,17 @@ pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[R
     if surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default() {
         surrogate.verdict.rigid_body_modes = super::rigid_body_modes(runs);
     }
+    // Whoever asks for an error of a share is told what share it is of.
+    if let (Some(share), true) = (judgement.share, has_tolerance(surrogate)) {
+        surrogate.training.settings.push(number("stable_share", share.not_unstable));
+    }
     if judgement.unlisted > 0 {
         surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
     }
+}
+
+fn has_tolerance(surrogate: &Surrogate) -> bool {
+    surrogate.training.settings.iter().any(|setting| setting.key == "proportion_tolerance")
 }
 
 /// Takes down all runs that were spent, and why the build ended early, if it did.

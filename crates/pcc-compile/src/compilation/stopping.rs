@@ -1,8 +1,10 @@
 //! The stopping rule: when a design is large enough.
 //!
-//! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error of the
-//! stability proportion is small enough and explains how many runs are undecided (`undecided.rs`). It ends as well when
-//! more runs are of no use: when that error has fallen more slowly than 1/√N for [`PATIENCE`] levels, over which the
+//! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error ε of the
+//! share p that is not unstable is small enough, ε ≤ tol √(p (1 − p)), and explains how many runs are undecided
+//! (`undecided.rs`). Stable and unstable count alike: an error of tol/2 of a half is one of tol/√p of a small share p,
+//! whichever side it is of. It ends as well when more
+//! runs are of no use: when that error has fallen more slowly than 1/√N for [`PATIENCE`] levels, over which the
 //! design grew to [`GROWTH`] times its size; when the fits have cost more than a model that is quickly run is worth; or
 //! at the largest design.
 
@@ -51,11 +53,11 @@ impl EarlyEnd {
 
 /// Whether a level is good enough, and whether the estimated error of the proportion still falls.
 pub(super) struct StoppingRule {
-    /// Estimated relative error of the proportion that is small enough; without it the fits alone decide.
+    /// Estimated error of the share that is small enough, relative to √(p (1 − p)); without it the fits alone decide.
     tolerance: Option<f64>,
     /// Work that fits may take.
     most_work: u64,
-    /// Size of the design and estimated error of the proportion, level by level.
+    /// Size of the design and estimated error of the share, level by level.
     errors: Vec<(usize, f64)>,
     levels: usize,
 }
@@ -79,9 +81,7 @@ impl StoppingRule {
 
     /// Whether a level with these fits and this judgement is good enough.
     pub fn holds(&self, fitted: &[Fitted], judgement: &Judgement) -> bool {
-        let is_small =
-            |tolerance| !judgement.is_doubtful && judgement.reducible_error.is_some_and(|error| error <= tolerance);
-        are_accurate(fitted) && self.tolerance.is_none_or(is_small)
+        are_accurate(fitted) && self.tolerance.is_none_or(|tolerance| judgement.is_within(tolerance))
     }
 
     /// Why a level that is not good enough is the last nevertheless, after so much work of fits.
@@ -117,9 +117,12 @@ fn are_accurate(fitted: &[Fitted]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compilation::decision::JudgedShare;
 
+    /// A half, known to this error.
     fn judged(reducible_error: Option<f64>) -> Judgement {
-        Judgement { reducible_error, ..Judgement::default() }
+        let share = JudgedShare { not_unstable: 0.5, points: 50_000 };
+        Judgement { share: Some(share), reducible_error, ..Judgement::default() }
     }
 
     fn rule(tolerance: Option<f64>) -> StoppingRule {
@@ -131,9 +134,9 @@ mod tests {
         let mut rule = rule(Some(1e-3));
         rule.note(Some(2e-3), 10);
         assert!(!rule.holds(&[], &judged(Some(2e-3))));
-        assert!(rule.holds(&[], &judged(Some(1e-3))));
+        assert!(rule.holds(&[], &judged(Some(0.5e-3))));
         assert!(!rule.holds(&[], &judged(None)), "what is not known is not small");
-        let doubtful = Judgement { is_doubtful: true, ..judged(Some(1e-3)) };
+        let doubtful = Judgement { is_doubtful: true, ..judged(Some(0.5e-3)) };
         assert!(!rule.holds(&[], &doubtful), "one eigenvalue is not known well enough");
     }
 

@@ -26,7 +26,7 @@ impl Model for EigenvaluesAlone {
 fn models_that_know_only_their_eigenvalues_are_fitted_by_values() {
     let model = || Box::new(EigenvaluesAlone(Clutch::new(&[], &["mu"]).unwrap()));
     let found = build_with(&study(""), model(), &Silent).unwrap();
-    let by_values = build(&study("derivatives = false\nproportion_tolerance = 2e-4"), &Silent).unwrap();
+    let by_values = build(&study("derivatives = false\nproportion_tolerance = 1e-4"), &Silent).unwrap();
     assert_eq!((&found.expansions, found.training.counts), (&by_values.expansions, by_values.training.counts));
     assert_eq!(found.training.counts.gradients, 0);
     assert_eq!(build_with(&study("derivatives = true"), model(), &Silent), Err(BuildError::NoDerivatives));

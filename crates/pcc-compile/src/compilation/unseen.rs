@@ -10,9 +10,9 @@
 //! closed under conjugation if they meet on the real axis at some of these points: divergence that no run has seen.
 
 use super::components::Care;
-use super::decision::at_judged_points;
 use super::group_fits::{Followed, GroupFit, GroupFits};
 use super::grouping::Grouping;
+use super::judged_points::{POINTS, at_judged_points};
 use crate::mechanics::spectrum::{CLOSE, Group};
 use crate::study::Study;
 use pcc_evaluate::foundation::{Interrupted, Observer};
@@ -96,7 +96,7 @@ fn approaches_the_axis(followed: &Followed<'_>, group: &Group) -> bool {
 /// Whether eigenvalues of a group closed under conjugation, which oscillate at every run, are predicted to be real
 /// somewhere. Of a single mode (Im λ)² = e₂ − (e₁/2)² is looked at, and known with its residuals.
 fn meets_the_axis(study: &Study, fit: &GroupFit, observer: &dyn Observer) -> Result<bool, Interrupted> {
-    let block = at_judged_points(&super::record::of_fits(study, &fit.output, &fit.fits), observer)?;
+    let block = at_judged_points(&super::record::of_fits(study, &fit.output, &fit.fits), POINTS, observer)?;
     let [e_1, e_2] = &block.components[..] else {
         return Ok(block.eigenvalues.iter().flatten().any(|lambda| lambda.im == 0.0));
     };
@@ -160,6 +160,6 @@ fn closes(
     let residual = error(2).hypot(error(3));
     let near = (0.5 * CLOSE * largest).powi(2).max(RESIDUALS * residual);
     let surrogate = super::record::of_fits(study, &fit.output, &fit.fits);
-    let block = at_judged_points(&surrogate, observer)?;
+    let block = at_judged_points(&surrogate, POINTS, observer)?;
     Ok(block.components[2].iter().zip(&block.components[3]).any(|(re, im)| re.hypot(*im) < near))
 }

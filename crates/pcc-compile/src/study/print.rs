@@ -98,11 +98,12 @@ fn fit(file: &mut Printer, study: &Study) {
             if study.uses_derivatives() { "used in the fit: r + 1 equations per run" } else { "not used in the fit" };
         file.line("derivatives", fit.derivatives.describe(), used);
     }
-    let tolerance = "estimated relative error of the stability proportion that is small enough";
+    let tolerance =
+        "estimated error of the share p of stable cases that is small enough, as a fraction of √(p (1 − p))";
     match fit.proportion_tolerance {
         Some(value) => file.line("proportion_tolerance", float(value), tolerance),
         None if fit.method.has_fixed_design() => {}
-        None => file.line("# proportion_tolerance", "0.001", &format!("{tolerance}; not used unless written")),
+        None => file.line("# proportion_tolerance", "0.0005", &format!("{tolerance}; not used unless written")),
     }
 }
 

@@ -487,7 +487,8 @@ impl JsonSchema for Fit {
         let derivatives = "Whether derivatives enter the fit: \"auto\", where the model has them and the target is \
                            invariants (default), true or false.";
         properties.insert("derivatives".into(), json!({"description": derivatives, "enum": ["auto", true, false]}));
-        let tolerance = "Estimated error of the stability proportion that is small enough.";
+        let tolerance =
+            "Estimated error of the share p of stable cases that is small enough, as a fraction of √(p (1 − p)).";
         properties.insert(
             "proportion_tolerance".into(),
             json!({"description": tolerance, "type": "number", "exclusiveMinimum": 0}),

@@ -1,0 +1,155 @@
+//! Which points change sides if the surrogate errs by the residuals of a run.
+
+use super::decision::quantile;
+use super::judged_points::at_judged_points;
+use crate::campaign::Run;
+use pcc_evaluate::components::{Block, Margin, Output, OutputKind};
+use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
+use pcc_evaluate::surrogate::Surrogate;
+
+/// Points that are tried for changing sides, those with the smallest excess, and as many marginal ones. Of the others,
+/// which only errors as large as all of the excess reach, each of those tried stands for [`FAR_APART`].
+const TRIED_POINTS: usize = 10_000;
+const FAR_APART: usize = 20;
+
+/// Runs whose residuals are tried, evenly spread: more change the estimate less than it is uncertain anyway.
+const TRIED_RUNS: usize = 150;
+
+/// Bounds are exceeded by rounding by less.
+const ROUNDING_MARGIN: f64 = 1.001;
+
+/// Shares of points that change sides, one per run, with the weights of the runs.
+pub(super) struct Shares {
+    pub shares: Vec<f64>,
+    pub weights: Vec<f64>,
+}
+
+impl Shares {
+    pub fn mean_of(&self, part: impl Fn(f64) -> f64) -> f64 {
+        let sum: f64 = self.shares.iter().zip(&self.weights).map(|(&share, weight)| weight * part(share)).sum();
+        sum / self.weights.iter().sum::<f64>()
+    }
+
+    pub fn effective_count(&self) -> f64 {
+        effective_count(&self.weights)
+    }
+}
+
+/// (Σw)²/Σw².
+fn effective_count(weights: &[f64]) -> f64 {
+    weights.iter().sum::<f64>().powi(2) / weights.iter().map(|weight| weight * weight).sum::<f64>()
+}
+
+/// The surrogate at many random points.
+pub(super) struct Judge<'a> {
+    surrogate: &'a Surrogate,
+    block: Block,
+    /// The points that are tried, by their distance from instability, each with the number of points it stands for.
+    near: Vec<(usize, f64)>,
+    weights: Vec<f64>,
+    observer: &'a dyn Observer,
+}
+
+impl<'a> Judge<'a> {
+    pub fn new(
+        surrogate: &'a Surrogate,
+        runs: &[Run],
+        points: usize,
+        observer: &'a dyn Observer,
+    ) -> Result<Self, Interrupted> {
+        let block = at_judged_points(surrogate, points, observer)?;
+        // Marginal points do not say how near they are to instability.
+        let (marginal, mut near): (Vec<usize>, Vec<usize>) = (0..points).partition(|&i| block.excess[i] == 0.0);
+        let nearer = |a: &usize, b: &usize| block.excess[*a].abs().total_cmp(&block.excess[*b].abs()).then(a.cmp(b));
+        near.sort_unstable_by(nearer);
+        let far = near.split_off(near.len().min(TRIED_POINTS));
+        let every = marginal.len().div_ceil(TRIED_POINTS).max(1);
+        let evenly = |points: Vec<usize>, every: usize| {
+            points.into_iter().step_by(every).map(|i| (i, every as f64)).collect::<Vec<_>>()
+        };
+        let near = [evenly(marginal, every), evenly(near, 1), evenly(far, FAR_APART)].concat();
+        let distances: Vec<f64> = runs.iter().map(|run| run.spectrum.top().excess.abs()).collect();
+        let mut sorted: Vec<f64> = distances.iter().copied().filter(|&distance| distance > 0.0).collect();
+        sorted.sort_by(f64::total_cmp);
+        let scale = if sorted.is_empty() { f64::MIN_POSITIVE } else { quantile(&sorted, 0.5) };
+        let weights = distances.iter().map(|distance| 1.0 / (1.0 + (distance / scale).powi(2))).collect();
+        Ok(Self { surrogate, block, near, weights, observer })
+    }
+
+    /// Number of points T.
+    pub fn points(&self) -> usize {
+        self.block.excess.len()
+    }
+
+    /// Number of points that are not unstable.
+    pub fn not_unstable(&self) -> usize {
+        not_unstable(&self.block)
+    }
+
+    pub fn observer(&self) -> &'a dyn Observer {
+        self.observer
+    }
+
+    pub fn effective_runs(&self) -> f64 {
+        effective_count(&self.weights)
+    }
+
+    /// By how much max Re can move at most if every component is larger by its residual: |√(d + e) ∓ √d| ≤ √|e| for a
+    /// pair.
+    fn reach(&self, residual: &[f64]) -> f64 {
+        let part = |output: &Output, k: usize| {
+            let [re, im] = [2 * k, 2 * k + 1].map(|at| residual[output.components[at].id]);
+            re.hypot(im)
+        };
+        let of_output = |output: &Output| match (output.kind, output.modes.len()) {
+            (OutputKind::Eigenvalue, _) => part(output, 0),
+            (OutputKind::Cluster, 2) => part(output, 0) + part(output, 1).sqrt(),
+            _ => f64::INFINITY,
+        };
+        // Not less than what rounding of the recombination adds.
+        let of_margin = match self.surrogate.verdict.margin {
+            Margin::GrowthRate(_) => 1.0,
+            // |λ| moves by as much as λ.
+            Margin::DampingRatio(ratio) => 1.0 + ratio,
+        };
+        of_margin * ROUNDING_MARGIN * self.surrogate.outputs.iter().map(of_output).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    /// Δp for the residuals of runs `first`….
+    pub fn shares(&self, residuals: &[Vec<f64>], first: usize) -> Result<Shares, Interrupted> {
+        let tried = residuals.len().min(TRIED_RUNS);
+        let run = |k: usize| k * residuals.len() / tried;
+        let shares = try_map(tried, |k| {
+            self.observer.check()?;
+            Ok(self.share(&residuals[run(k)]))
+        })?;
+        Ok(Shares { shares, weights: (0..tried).map(|k| self.weights[first + run(k)]).collect() })
+    }
+
+    /// Stable points gained minus lost, as a share, if every component were larger by its residual.
+    fn share(&self, residual: &[f64]) -> f64 {
+        let (mut values, mut eigenvalues) = (vec![0.0; residual.len()], Vec::new());
+        let mut gained = 0.0;
+        let reach = self.reach(residual);
+        for &(i, stands_for) in self.near.iter().take_while(|&&(i, _)| self.block.excess[i].abs() <= reach) {
+            for ((value, component), rest) in values.iter_mut().zip(&self.block.components).zip(residual) {
+                *value = component[i] + rest;
+            }
+            eigenvalues.clear();
+            self.surrogate.outputs.iter().for_each(|output| output.recombine(&values, &mut eigenvalues));
+            let moved = is_not_unstable(self.surrogate.verdict.top(&eigenvalues).excess);
+            gained += stands_for * (f64::from(moved) - f64::from(is_not_unstable(self.block.excess[i])));
+        }
+        gained / self.points() as f64
+    }
+}
+
+/// Whether a point with this excess is stable or marginal; what is no number is neither.
+pub(super) fn is_not_unstable(excess: f64) -> bool {
+    excess <= 0.0
+}
+
+/// Number of points that are not unstable.
+pub(super) fn not_unstable(block: &Block) -> usize {
+    block.excess.iter().filter(|&&excess| is_not_unstable(excess)).count()
+}
