@@ -1,7 +1,9 @@
 //! What a build spent, and how good its surrogate is.
 
+use super::confidence::known_error;
 use super::fit::{FitReport, share_of_variance};
 use super::layout::{Facts, width, write_verdict, write_warnings};
+use super::sight::Sight;
 use super::smallest_share::{SmallestShare, estimated_error};
 use pcc_compile::campaign::Failure;
 use pcc_compile::compilation::BuiltFile;
@@ -131,12 +133,12 @@ impl BuildReport {
             undamped: surrogate.is_undamped(),
             warnings: FitReport::warnings_of(surrogate).into_iter().chain(runs.warning()).collect(),
             runs,
-            estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
+            estimated_error_percent: known_error(surrogate).map(|error| 100.0 * error),
             smallest_share: SmallestShare::of(surrogate),
             components: FitReport::of(surrogate),
             elapsed_seconds,
         };
-        report.verdict = report.verdict(estimated_error(surrogate));
+        report.verdict = report.verdict(Sight::of(surrogate), estimated_error(surrogate));
         report
     }
 }
@@ -164,12 +166,13 @@ pub(super) fn level_list(levels: &[u64]) -> String {
 }
 
 impl BuildReport {
-    fn verdict(&self, estimated_error: Option<String>) -> String {
+    fn verdict(&self, sight: Option<Sight>, estimated_error: Option<String>) -> String {
         let runs = plural(self.direct_computations as usize, "model run");
         let derivatives = with_derivatives(self.runs_with_derivatives, self.direct_computations);
-        let error = match estimated_error {
-            Some(error) => format!("estimated error {error}"),
-            None => "its error is not estimated".to_owned(),
+        let error = match (sight, estimated_error) {
+            (Some(sight), _) => format!("it is {}", sight.words()),
+            (None, Some(error)) => format!("estimated error {error}"),
+            (None, None) => "its error is not estimated".to_owned(),
         };
         format!("{} is built from {runs}{derivatives}; {error}.", self.study)
     }

@@ -2,6 +2,7 @@
 
 use super::certify::{assumed, contradicts, ends as ends_in_words};
 use super::numbers::{level, plain_range, share, share_below, share_range, significant};
+use super::sight::Sight;
 use super::survey::LEVEL;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::probability::statistics::{Interval, Proportion};
@@ -101,7 +102,7 @@ impl Confidence {
         Self {
             interval,
             surrogate_band: (!decision.max_re_residuals.is_empty()).then_some(band),
-            estimated_error_percent: decision.proportion_error.map(|error| 100.0 * error),
+            estimated_error_percent: known_error(surrogate).map(|error| 100.0 * error),
             verified_bound: verified_bound(surrogate),
             bound_if_errors_fall_off: chosen(surrogate).and_then(|(certificate, _)| assumed_share(certificate)),
             basis: Basis {
@@ -157,6 +158,11 @@ impl Confidence {
         self.verified_bound = None;
         self.bound_if_errors_fall_off = None;
     }
+}
+
+/// The estimated error of a surrogate, unless its runs tell nothing of it.
+pub(super) fn known_error(surrogate: &Surrogate) -> Option<f64> {
+    surrogate.decision.proportion_error.filter(|_| !Sight::of(surrogate).is_some_and(Sight::is_unknown))
 }
 
 /// Whether the estimated error of a surrogate is the part of modes left out alone: the rest takes two design levels,

@@ -8,6 +8,7 @@ use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band, rigid_body_modes, with_margin};
 use super::sensitivity::{CriticalReport, SensitivityReport};
 use super::shapley::ShapleyReport;
+use super::sight::Sight;
 use super::smallest_share::SmallestShare;
 use super::survey::{EventReport, HistogramReport, LEVEL, QuantilesReport, events, histograms};
 use pcc_compile::reference::Reference;
@@ -136,6 +137,8 @@ pub struct OnlyInText {
     pub requested_replicates: u32,
     /// The inputs of a surrogate, for units of conditions.
     pub inputs: Vec<Input>,
+    /// What is known of it where an estimate is not.
+    pub(super) sight: Option<Sight>,
 }
 
 /// Moments and range.
@@ -284,6 +287,7 @@ impl EvalReport {
             merged_parts: found.merged_parts,
             requested_replicates: question.replicates,
             inputs: surrogate.inputs.inputs().to_vec(),
+            sight: Sight::of(surrogate),
         };
         report.conditions = question.conditions.clone();
         report.dependence = DependenceReport::of(&surrogate.inputs);
@@ -436,6 +440,7 @@ impl EvalReport {
                 merged_parts: None,
                 requested_replicates: 1,
                 inputs: Vec::new(),
+                sight: None,
             },
         }
     }

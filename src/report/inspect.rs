@@ -3,10 +3,12 @@
 use super::build::{level_list, with_derivatives};
 use super::certify::CertificateReport;
 use super::dependence::DependenceReport;
+use super::confidence::known_error;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
 use super::layout::{Facts, width, write_verdict, write_warnings};
 use super::numbers::significant;
+use super::sight::Sight;
 use super::smallest_share::{SmallestShare, estimated_error};
 use super::table::{Align, Table};
 use pcc_evaluate::artifact::{Artifact, Format};
@@ -189,9 +191,9 @@ impl InspectReport {
             warnings: FitReport::warnings_of(surrogate),
             components: FitReport::of(surrogate),
             plan: PlanReport { terms: plan.terms(), flops: plan.flops() },
-            estimated_error_percent: surrogate.decision.proportion_error.map(|error| 100.0 * error),
+            estimated_error_percent: known_error(surrogate).map(|error| 100.0 * error),
             smallest_share: SmallestShare::of(surrogate),
-            error_words: estimated_error(surrogate),
+            error_words: Sight::of(surrogate).map(Sight::words).or(estimated_error(surrogate)),
             self_test_difference: self_test_difference(surrogate),
             self_test_tolerance: surrogate.self_test.tolerance,
             certificates: CertificateReport::of(surrogate),

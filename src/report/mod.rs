@@ -25,6 +25,7 @@ mod part;
 mod reproduction;
 mod sensitivity;
 mod shapley;
+mod sight;
 mod smallest_share;
 mod surrogate_page;
 mod survey;

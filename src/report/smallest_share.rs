@@ -1,6 +1,6 @@
 //! The smaller of the stable and the unstable share: what errors are told of, since the larger one hides them.
 
-use super::confidence::is_of_modes_left_out;
+use super::confidence::{is_of_modes_left_out, known_error};
 use super::numbers::{share, significant};
 use pcc_compile::reference::Comparison;
 use pcc_evaluate::surrogate::{SettingValue, Surrogate};
@@ -41,7 +41,7 @@ impl SmallestShare {
             (false, _) => ("unstable", 1.0 - not_unstable),
         };
         let reference = if not_unstable > 0.0 { not_unstable } else { 1.0 };
-        let error = surrogate.decision.proportion_error.map(|error| error * reference);
+        let error = known_error(surrogate).map(|error| error * reference);
         Some(Self {
             name,
             share,

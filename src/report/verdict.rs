@@ -5,6 +5,7 @@ use super::judgement::MarginReport;
 use super::numbers::{plain, share, share_range, significant};
 use super::sensitivity::SensitivityReport;
 use super::shapley::ShapleyReport;
+use super::sight::Sight;
 use super::survey::conditions_text;
 use pcc_evaluate::foundation::plural;
 
@@ -71,6 +72,16 @@ impl EvalReport {
             let never = self.unstable_proportion == 0.0;
             let unstable = if never { String::new() } else { format!(", unstable in {unstable}") };
             return format!("is undamped: marginal in {marginal} of cases{unstable}");
+        }
+        if let Some(sight) = self.only_in_text.sight {
+            let is_seen = match sight {
+                Sight::Everywhere { nearest, .. } if nearest > 0.0 => self.unstable_proportion == 1.0,
+                Sight::Everywhere { .. } => self.unstable_proportion == 0.0 && self.marginal_proportion == 0.0,
+                Sight::Unknown { .. } => true,
+            };
+            if is_seen {
+                return format!("is {}", sight.words());
+            }
         }
         let samples = plural(self.samples as usize, "sample");
         if self.unstable_proportion == 0.0 && self.marginal_proportion == 0.0 {

@@ -3,6 +3,7 @@
 use super::build::is_quadrature;
 use super::fit::FitReport;
 use super::numbers::significant;
+use super::sight::Sight;
 use super::smallest_share::SmallestShare;
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::{Setting, SettingValue, StopReason, Surrogate};
@@ -39,6 +40,7 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
         "fits-cost-more" => {
             "because fits take far longer than the runs of this model; set design.maximum to let it go on"
         }
+        "blind" => "because more runs have not found the rarer side; set design.maximum to let it go on",
         "largest-design" => "because design.maximum allows no more",
         "interrupted" => "because it was stopped",
         other => other,
@@ -162,8 +164,11 @@ impl FitReport {
         }
         warnings.extend(Self::distrusted(surrogate));
         warnings.extend(ended_early(surrogate).map(|reason| ended(reason, surrogate)));
+        let sight = Sight::of(surrogate);
+        warnings.extend(sight.and_then(Sight::warning));
         let smallest = SmallestShare::of(surrogate);
         match (surrogate.decision.proportion_error, tolerance) {
+            _ if sight.is_some() => {}
             (Some(_), _) if unlisted.is_none() && smallest.is_some() => {
                 warnings.extend(smallest.filter(SmallestShare::is_off).and_then(|share| share.warning()));
             }

@@ -34,6 +34,7 @@ mod openturns;
 mod overwriting;
 mod programs;
 mod questions;
+mod rare;
 mod shipped;
 mod table2;
 mod wide;

@@ -29,6 +29,7 @@
 //! truth over seeds and sizes: the truth is a half to three quarters of the estimate in the median and seldom more than
 //! three times it. Where errors all point the same way, the assumption of independence fails and it can be more.
 
+use super::blindness::{Groups, Sight, unstable_runs};
 use super::judged_points::{POINTS, at_judged_points, points_for};
 use super::trials::{Judge, Shares, is_not_unstable, not_unstable};
 use super::undecided::{is_chance, undecided};
@@ -119,16 +120,30 @@ pub(super) struct Judgement {
     pub reducible_error: Option<f64>,
     /// Whether more runs are undecided than so small an error explains.
     pub is_doubtful: bool,
+    /// What the runs have seen, if they were left out one by one.
+    pub sight: Option<Sight>,
+    /// The excess at the judged points, of a blind level.
+    pub excess: Vec<f64>,
     /// For the next level.
     pub previous: Option<Previous>,
 }
 
 impl Judgement {
-    /// Whether the share is known to this tolerance: error ≤ tol √(p (1 − p)).
+    /// Whether the share is known to this tolerance: error ≤ tol √(p (1 − p)). Of a blind level it is not.
     pub fn is_within(&self, tolerance: f64) -> bool {
-        let Some(share) = self.share else { return false };
+        !self.is_blind() && self.would_be_within(Some(tolerance))
+    }
+
+    /// The same of any level.
+    pub fn would_be_within(&self, tolerance: Option<f64>) -> bool {
+        let Some((share, tolerance)) = self.share.zip(tolerance) else { return false };
         let small = tolerance * share.deviation();
         !self.is_doubtful && self.reducible_error.is_some_and(|error| error <= small)
+    }
+
+    /// Whether too few runs lie on the rarer side for an estimate.
+    pub fn is_blind(&self) -> bool {
+        self.sight.is_some_and(|sight| sight.is_blind())
     }
 }
 
@@ -139,6 +154,8 @@ pub(super) struct Purpose {
     pub tolerance: Option<f64>,
     /// Whether no level follows.
     pub is_last: bool,
+    /// Whether the share is known to be 0 or 1 if this level finds nothing near the boundary.
+    pub is_final: bool,
 }
 
 /// A level to be judged.
@@ -167,9 +184,11 @@ pub(super) fn judge(
     let blind = blind_residuals(fitted, runs.len());
     let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
     let unlisted = (0..runs.len()).filter(|&i| contradicts(surrogate, values, i, &runs[i])).count() as u64;
+    let groups = Groups::new(surrogate, values, &seen);
+    let mut sight = groups.sight(unstable_runs(surrogate, values, runs.len()), runs.len());
     if purpose.is_last && before.is_none() && unlisted == 0 {
         let decision = Decision { max_re_residuals, proportion_error: None };
-        return Ok(Judgement { decision, ..Judgement::default() });
+        return Ok(Judgement { decision, sight: Some(sight), ..Judgement::default() });
     }
     let residuals = Residuals { seen, blind };
     let forgotten = unlisted as f64 / runs.len() as f64;
@@ -177,13 +196,24 @@ pub(super) fn judge(
     let mut found = Found::by(&judge, &residuals, before, forgotten)?;
     let undecided = undecided(surrogate, values, &residuals.seen, runs);
     let is_doubtful = !is_chance(undecided, BOTH_SIDES * found.at.mean_change * runs.len() as f64);
-    let mut judgement = found.judgement(is_doubtful);
+    if sight.is_blind() && sight.rare() == 0 {
+        let is_stable = sight.unstable == 0;
+        sight.clearance = groups.clearance(surrogate, judge.block(), is_stable);
+        if sight.clearance.is_some() && purpose.is_final {
+            let block = at_judged_points(surrogate, points_for(surrogate, 0), observer)?;
+            sight.clearance = groups.clearance(surrogate, &block, is_stable);
+        }
+    }
+    let mut judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful) };
     let not_unstable = judge.not_unstable();
     let points = points_for(surrogate, not_unstable.min(POINTS - not_unstable));
     if points > POINTS && purpose.tolerance.is_some_and(|tolerance| judgement.is_within(tolerance)) {
         let judge = Judge::new(surrogate, runs, points, observer)?;
         found = Found::by(&judge, &residuals, before, forgotten)?;
-        judgement = found.judgement(is_doubtful);
+        judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful) };
+    }
+    if sight.is_blind() {
+        judgement.excess.clone_from(&judge.block().excess);
     }
     let share = found.share;
     let proportion_error = judgement.error.map(|error| error / share.reference()).filter(|error| error.is_finite());
@@ -387,8 +417,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_doubtful_is_not_known() {
+    fn what_is_doubtful_or_blind_is_not_known() {
         let doubtful = Judgement { is_doubtful: true, ..judged(0.5, 0.0) };
         assert!(judged(0.5, 0.0).is_within(1e-5) && !doubtful.is_within(1.0) && !Judgement::default().is_within(1.0));
+        let sight = Sight { unstable: 2, runs: 20, is_marginal: false, clearance: None };
+        let blind = Judgement { sight: Some(sight), ..judged(0.5, 0.0) };
+        assert!(!blind.is_within(1.0) && blind.would_be_within(Some(1e-5)));
     }
 }

@@ -69,10 +69,12 @@ pub(super) struct Evaluations<'a> {
     campaign: Campaign<'a>,
     design: NestedLatinHypercube,
     runner: Runner<'a>,
-    /// Points of the design whose runs have ended; an interruption may leave others behind them.
-    tried: usize,
-    /// For each sample, its point of the design.
+    /// Standardized coordinates of all points whose runs have ended, in the order of the runs.
+    tried: Vec<f64>,
+    /// For each sample, its number among these points.
     answered: Vec<usize>,
+    /// Points of the design among these; the others were chosen.
+    of_design: Vec<bool>,
     runs: Vec<Run>,
     /// The run nearest the middle of the inputs on the first level: where labels get their names.
     root: Option<usize>,
@@ -98,8 +100,9 @@ impl<'a> Evaluations<'a> {
                 }
             },
             runner: if ranks { runner } else { runner.without_ranks() }.with_derivatives(study.uses_derivatives()),
-            tried: 0,
+            tried: Vec::new(),
             answered: Vec::new(),
+            of_design: Vec::new(),
             runs: Vec::new(),
             root: None,
         })
@@ -111,8 +114,32 @@ impl<'a> Evaluations<'a> {
     ///
     /// [`BuildError`] if a run fails that the study does not skip, or if too many fail.
     pub fn grow_to(&mut self, size: usize, observer: &dyn Observer) -> Result<(), BuildError> {
-        self.run(size, observer)?;
+        let old = self.design.len();
+        self.design.grow_to(size);
+        let design = self.design.placed(|units| self.study.inputs.place(units));
+        self.run(design.points().skip(old), true, observer)?;
         self.check_failures()
+    }
+
+    /// Runs the model at standardized points that are none of the design.
+    ///
+    /// # Errors
+    ///
+    /// As [`Evaluations::grow_to`].
+    pub fn add(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<(), BuildError> {
+        self.run(points.iter().map(Vec::as_slice), false, observer)?;
+        self.check_failures()
+    }
+
+    /// Number of points whose runs have ended: of the design, and of those chosen.
+    pub fn sizes(&self) -> [usize; 2] {
+        let of_design = self.of_design.iter().filter(|&&is| is).count();
+        [of_design, self.of_design.len() - of_design]
+    }
+
+    /// Whether sample `i` is a point of the design.
+    pub fn is_of_design(&self, i: usize) -> bool {
+        self.of_design[self.answered[i]]
     }
 
     /// What a fit needs of all points, with modes by frequency rank.
@@ -178,22 +205,24 @@ impl<'a> Evaluations<'a> {
         self.runner.has_derivatives()
     }
 
-    fn run(&mut self, size: usize, observer: &dyn Observer) -> Result<(), RunError> {
-        let old = self.design.len();
-        self.design.grow_to(size);
-        let standardized = self.points();
-        let new_points = standardized.points().skip(old);
-        let points: Vec<Vec<f64>> = new_points.map(|point| self.study.inputs.physical(point)).collect();
+    fn run<'p>(
+        &mut self,
+        standardized: impl Iterator<Item = &'p [f64]>,
+        is_of_design: bool,
+        observer: &dyn Observer,
+    ) -> Result<(), RunError> {
+        let standardized: Vec<&[f64]> = standardized.collect();
+        let points: Vec<Vec<f64>> = standardized.iter().map(|point| self.study.inputs.physical(point)).collect();
         observer.begin("model runs", points.len() as u64);
         let runs = self.runner.run_skipping(&points, observer);
         observer.finish();
-        let runs = runs?;
-        self.tried = old + runs.len();
-        for (i, run) in (old..).zip(runs) {
+        for (point, run) in standardized.into_iter().zip(runs?) {
             if let Some(run) = run {
-                self.answered.push(i);
+                self.answered.push(self.of_design.len());
                 self.runs.push(run);
             }
+            self.of_design.push(is_of_design);
+            self.tried.extend_from_slice(point);
         }
         Ok(())
     }
@@ -213,22 +242,22 @@ impl<'a> Evaluations<'a> {
 
     /// Number of runs that failed.
     pub fn failed(&self) -> usize {
-        self.tried - self.runs.len()
+        self.of_design.len() - self.runs.len()
     }
 
     /// The runs, if some failed.
     pub fn coverage(&self) -> Option<Coverage> {
         let (points, mut answered, mut unanswered) = (self.points(), Vec::new(), Vec::new());
-        for i in 0..self.tried {
+        for i in 0..points.len() {
             let runs = if self.answered.binary_search(&i).is_ok() { &mut answered } else { &mut unanswered };
             runs.push(points.point(i).to_vec());
         }
         (self.failed() > 0).then_some(Coverage { answered, unanswered })
     }
 
-    /// All points of the design in standardized coordinates.
-    fn points(&self) -> Samples {
-        self.design.placed(|units| self.study.inputs.place(units))
+    /// All points whose runs have ended, in standardized coordinates.
+    pub fn points(&self) -> Samples {
+        Samples::new(self.study.inputs.dimension(), self.tried.clone())
     }
 
     /// The points whose runs answered, in standardized coordinates.

@@ -33,7 +33,12 @@ pub(super) fn remark(
     judgement: &Judgement,
     spent: Spent,
 ) -> String {
+    let blind = judgement.sight.filter(|sight| sight.is_blind());
     let error = match judgement.share.zip(judgement.error) {
+        _ if blind.is_some() => {
+            let unstable = blind.map_or(0, |sight| sight.unstable);
+            format!("{unstable} of them unstable, too few on one side to tell how often")
+        }
         Some((share, error)) => {
             let stable = share.not_unstable;
             let (name, rarer) = if stable <= 0.5 { ("stable", stable) } else { ("unstable", 1.0 - stable) };

@@ -4,11 +4,13 @@
 //! A build that ends early gives the level with the smallest estimated error. What the runs of later levels say of an
 //! earlier one is part of that: the share of them that it calls otherwise than the model.
 
+use super::blindness::{LEAST_RARE, Sight};
 use super::components::{ComponentFit, ComponentResult};
-use super::decision::{Before, Judged, Previous, Purpose, judge};
+use super::decision::{Before, Judged, Judgement, Previous, Purpose, judge};
 use super::evaluations::{Evaluations, Level, groups};
 use super::grouped::GroupedEigenvalues;
 use super::level_remark::{Spent, remark, slowest};
+use super::near_boundary::near_boundary;
 use super::ranked::RankedModes;
 use super::stopping::{EarlyEnd, StoppingRule};
 use super::{BuildError, Built, record, rigid_body_modes};
@@ -24,6 +26,16 @@ use std::time::Instant;
 
 /// A level takes the place of an earlier one unless its estimated error is so many times as large.
 const MUCH_WORSE: f64 = 1.5;
+
+/// Batches that must find nothing near the boundary before a share is known to be 0 or 1.
+const CLEAR_BATCHES: usize = 2;
+
+/// Runs of a batch, at least; else as many as inputs, but no more than a level of the design has.
+const LEAST_BATCH: usize = 3;
+
+/// Blind builds end, unless the study says how many runs they are worth, before the design has more than so many times
+/// the runs of its second level.
+const BLIND_GROWTH: usize = 2;
 
 /// Builds level by level, until the stopping rule holds.
 pub(super) fn build(
@@ -62,14 +74,28 @@ struct Candidate {
     reference: f64,
 }
 
+/// What makes a level.
+enum Growth {
+    /// The design grows to this size.
+    Design(usize),
+    /// Runs at these points near the boundary.
+    Batch(Vec<Vec<f64>>),
+}
+
 /// The levels so far.
 struct Levels<'a> {
     study: &'a Study,
     fitting: Fitting<'a>,
     evaluations: Evaluations<'a>,
     stopping: StoppingRule,
-    /// Sizes of the levels, the last of which is the next or current one.
+    /// Numbers of runs of the levels so far.
     sizes: Vec<u64>,
+    /// What makes the next level.
+    growth: Growth,
+    /// Batches of runs near the boundary, one after the other, that have found it nowhere.
+    clear_batches: usize,
+    /// What the runs of the last level have seen.
+    sight: Option<Sight>,
     grouping: Vec<Output>,
     previous: Option<Previous>,
     spent: Spent,
@@ -88,7 +114,10 @@ impl<'a> Levels<'a> {
             evaluations: Evaluations::new(campaign, model, matches!(fitting, Fitting::Ranked(_)))?,
             fitting,
             stopping: StoppingRule::new(study),
-            sizes: vec![study.design.initial as u64],
+            sizes: Vec::new(),
+            growth: Growth::Design(study.design.initial),
+            clear_batches: 0,
+            sight: None,
             grouping: Vec::new(),
             previous: None,
             spent: Spent::default(),
@@ -100,18 +129,22 @@ impl<'a> Levels<'a> {
     /// One level. Its surrogate if it is the last one.
     fn next(&mut self, observer: &dyn Observer) -> Result<Option<Surrogate>, BuildError> {
         // Step 1: the design, and the model at its points.
-        let size = self.sizes.last().map_or(0, |&size| size as usize);
         let start = Instant::now();
-        self.evaluations.grow_to(size, observer)?;
+        let is_batch = match &self.growth {
+            Growth::Design(size) => self.evaluations.grow_to(*size, observer).map(|()| false)?,
+            Growth::Batch(points) => self.evaluations.add(points, observer).map(|()| true)?,
+        };
+        let size = self.evaluations.sizes().iter().sum();
+        self.sizes.push(size as u64);
         self.spent.runs += start.elapsed();
         let start = Instant::now();
         // Steps 2 and 3: what the components are, and their terms and coefficients.
-        let next = self.study.design.next_size(size).filter(|_| !self.study.fit.method.has_fixed_design());
+        let next = self.next_design().filter(|_| !self.study.fit.method.has_fixed_design());
         let fitted = self.fitting.fit(&mut self.evaluations, next.is_some(), observer)?;
         // Step 4: a design that is too small for the terms that matter grows.
         let (level, fitted) = match (next, fitted) {
             (Some(next), None) => {
-                self.sizes.push(next as u64);
+                self.growth = Growth::Design(next);
                 return Ok(None);
             }
             (None, None) => (self.evaluations.by_rank()?, Vec::new()),
@@ -128,17 +161,29 @@ impl<'a> Levels<'a> {
         let before = self.previous.as_ref().map(|previous| Before { previous, is_regrouped });
         let tolerance = self.study.fit.proportion_tolerance;
         let judged = Judged { surrogate: &surrogate, fitted: &results, values: &level.values, runs };
-        let mut judgement = judge(judged, before, Purpose { tolerance, is_last }, observer)?;
+        let is_final = is_batch && self.clear_batches + 1 >= CLEAR_BATCHES;
+        let mut judgement = judge(judged, before, Purpose { tolerance, is_last, is_final }, observer)?;
+        let is_first = self.previous.is_none();
         self.previous = judgement.previous.take();
         record::judged(&mut surrogate, &judgement, runs);
         self.spent.fits += start.elapsed();
         observer.remark(&remark((size, tolerance), slowest, &judgement, self.spent));
         self.stopping.note(judgement.reducible_error.or(judgement.error), size);
-        let is_enough = self.stopping.holds(&results, &judgement);
-        if next.is_none() && !is_enough && !self.study.fit.method.has_fixed_design() {
+        let former = std::mem::replace(&mut self.sight, judgement.sight.filter(|_| tolerance.is_some()));
+        let is_clear = self.sight.is_some_and(|sight| sight.is_blind() && sight.clearance.is_some());
+        self.clear_batches = if is_clear { self.clear_batches + usize::from(is_batch) } else { 0 };
+        let is_enough = match self.clear_batches >= CLEAR_BATCHES {
+            true => self.stopping.are_accurate(&results),
+            false => self.stopping.holds(&results, &judgement),
+        };
+        let batch = (!is_first && !is_enough && tolerance.is_some() && self.stopping.are_accurate(&results))
+            .then(|| self.batch(&surrogate, &judgement, former))
+            .flatten();
+        let growth = batch.map(Growth::Batch).or(next.map(Growth::Design)).filter(|_| !is_enough);
+        if growth.is_none() && !is_enough && !self.study.fit.method.has_fixed_design() {
             self.early_end = self.stopping.end_at_largest_design(&results);
         }
-        let Some(next) = next.filter(|_| !is_enough) else {
+        let Some(growth) = growth else {
             return match self.fitting.refusal() {
                 Some(refusal) => Err(refusal),
                 None => Ok(Some(surrogate)),
@@ -149,8 +194,45 @@ impl<'a> Levels<'a> {
             self.candidates.push(Candidate { surrogate, error: judgement.error, reference });
         }
         self.early_end = self.stopping.early_end(&results, self.fitting.work());
-        self.sizes.push(next as u64);
+        if self.is_blind_for_good(&growth) {
+            self.early_end = Some(EarlyEnd::Blind);
+        }
+        self.growth = growth;
         Ok(None)
+    }
+
+    /// The size of the next design: with the runs near the boundary it is not larger than the study allows.
+    fn next_design(&self) -> Option<usize> {
+        let [of_design, chosen] = self.evaluations.sizes();
+        let most = self.study.design.maximum.saturating_sub(chosen);
+        self.study.design.next_size(of_design).map(|size| size.min(most)).filter(|&size| size > of_design)
+    }
+
+    /// Points near the boundary for the next runs. A blind level takes them while nothing comes near the boundary, while
+    /// they find the rarer side, and after each level of the design; unless the next of these should see enough of it.
+    fn batch(&self, surrogate: &Surrogate, judgement: &Judgement, former: Option<Sight>) -> Option<Vec<Vec<f64>>> {
+        let sight = judgement.sight.filter(|sight| sight.is_blind())?;
+        let share = judgement.share.map_or(0.0, |share| share.not_unstable.min(1.0 - share.not_unstable));
+        let is_soon_seen = self.next_design().is_some_and(|size| share * size as f64 >= LEAST_RARE as f64);
+        let is_worth_it = match (&self.growth, former) {
+            (Growth::Batch(_), Some(former)) => sight.clearance.is_some() || sight.rare() > former.rare(),
+            _ => true,
+        };
+        if !is_worth_it || (is_soon_seen && !judgement.would_be_within(self.study.fit.proportion_tolerance)) {
+            return None;
+        }
+        let room = self.study.design.maximum.saturating_sub(self.evaluations.sizes().iter().sum());
+        let wanted = self.study.inputs.dimension().max(LEAST_BATCH).min(self.study.design.step).min(room);
+        let points = near_boundary(surrogate, &judgement.excess, &self.evaluations.points(), wanted);
+        Some(points).filter(|points| !points.is_empty())
+    }
+
+    /// Whether the rarer side has been looked for long enough, where the study does not say how long.
+    fn is_blind_for_good(&self, growth: &Growth) -> bool {
+        let is_blind = self.sight.is_some_and(|sight| sight.is_blind());
+        let second = self.study.design.initial + self.study.design.step;
+        let is_large = matches!(growth, Growth::Design(size) if *size > BLIND_GROWTH * second);
+        is_blind && is_large && !self.study.limits_runs()
     }
 
     /// The best level so far, the last of about equal ones, with what later runs say of its error.
@@ -173,7 +255,8 @@ impl<'a> Levels<'a> {
     fn denied_by_later_runs(&self, surrogate: &Surrogate) -> f64 {
         let known = surrogate.training.counts.values as usize;
         let samples = self.evaluations.samples();
-        let later: Vec<usize> = (known..samples.len()).collect();
+        // Points chosen near the boundary say nothing of a share.
+        let later: Vec<usize> = (known..samples.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
         let points: Vec<&[f64]> = later.iter().map(|&i| samples.point(i)).collect();
         let block = evaluate_points(surrogate, &Plan::new(surrogate), &points);
         let differs = |(&i, &excess): (&usize, &f64)| {
@@ -185,7 +268,9 @@ impl<'a> Levels<'a> {
 
     /// The result: a level, with all runs that were spent.
     fn ended(&self, mut surrogate: Surrogate, early_end: Option<EarlyEnd>) -> Built {
-        record::ended(&mut surrogate, &self.evaluations, early_end);
+        let is_settled = self.clear_batches >= CLEAR_BATCHES && early_end.is_none();
+        let sight = self.sight.map(|sight| Sight { clearance: sight.clearance.filter(|_| is_settled), ..sight });
+        record::ended(&mut surrogate, &self.evaluations, sight, early_end);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
         Built { surrogate, rigid_body_modes: rigid_body_modes(self.evaluations.runs()) }
     }

@@ -1,5 +1,6 @@
 //! The build: from a study to a surrogate, level by level, until the stopping rule holds.
 
+mod blindness;
 mod components;
 mod decision;
 mod elements;
@@ -13,6 +14,7 @@ mod infinite;
 mod judged_points;
 mod level_remark;
 mod levels;
+mod near_boundary;
 mod numbering;
 mod ranked;
 mod record;

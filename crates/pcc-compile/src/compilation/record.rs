@@ -1,5 +1,6 @@
 //! From fitted components to a surrogate that carries its own history.
 
+use super::blindness::Sight;
 use super::components::ComponentResult;
 use super::decision::Judgement;
 use super::evaluations::{Evaluations, Level};
@@ -122,10 +123,26 @@ fn has_tolerance(surrogate: &Surrogate) -> bool {
 }
 
 /// Takes down all runs that were spent, and why the build ended early, if it did.
-pub(super) fn ended(surrogate: &mut Surrogate, evaluations: &Evaluations<'_>, early_end: Option<EarlyEnd>) {
+pub(super) fn ended(
+    surrogate: &mut Surrogate,
+    evaluations: &Evaluations<'_>,
+    sight: Option<Sight>,
+    early_end: Option<EarlyEnd>,
+) {
     surrogate.training.counts.direct_computations = (evaluations.runs().len() + evaluations.failed()) as u64;
     surrogate.training.counts.failed = evaluations.failed() as u64;
     surrogate.coverage = evaluations.coverage();
+    let settings = &mut surrogate.training.settings;
+    let [_, chosen] = evaluations.sizes();
+    if chosen > 0 {
+        settings.push(setting("runs_near_boundary", SettingValue::Integer(chosen as u64)));
+    }
+    if let Some(sight) = sight.filter(Sight::is_blind) {
+        settings.push(setting("unstable_runs", SettingValue::Integer(sight.unstable as u64)));
+        if let Some(clearance) = sight.clearance {
+            settings.extend([number("nearest_excess", clearance.nearest), number("nearest_error", clearance.error)]);
+        }
+    }
     let word = early_end.map(|end| setting("ended", SettingValue::Text(end.name().to_owned())));
     surrogate.training.settings.extend(word);
 }

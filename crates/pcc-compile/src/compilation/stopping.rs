@@ -3,10 +3,10 @@
 //! A build ends when every component is fitted well enough and, if the study asks for it, the estimated error ε of the
 //! share p that is not unstable is small enough, ε ≤ tol √(p (1 − p)), and explains how many runs are undecided
 //! (`undecided.rs`). Stable and unstable count alike: an error of tol/2 of a half is one of tol/√p of a small share p,
-//! whichever side it is of. It ends as well when more
-//! runs are of no use: when that error has fallen more slowly than 1/√N for [`PATIENCE`] levels, over which the
-//! design grew to [`GROWTH`] times its size; when the fits have cost more than a model that is quickly run is worth; or
-//! at the largest design.
+//! whichever side it is of. Where fewer than three runs lie on the rarer side, no error is small enough
+//! (`blindness.rs`). It ends as well when more runs are of no use: when that error has fallen more slowly than 1/√N for
+//! [`PATIENCE`] levels, over which the design grew to [`GROWTH`] times its size; when the fits have cost more than a
+//! model that is quickly run is worth; or at the largest design.
 
 use super::decision::Judgement;
 use crate::fitting::fit::Fitted;
@@ -33,6 +33,8 @@ pub(super) enum EarlyEnd {
     ErrorStalled,
     /// The fits cost more than more runs are worth.
     FitsCostMore,
+    /// Too few runs lie on the rarer side for an estimate, and more have not found it.
+    Blind,
     /// The design is as large as the study allows, and no component asks for a larger one.
     LargestDesign,
     /// The user asked to stop and to take what there is.
@@ -45,6 +47,7 @@ impl EarlyEnd {
         match self {
             Self::ErrorStalled => "error-stalled",
             Self::FitsCostMore => "fits-cost-more",
+            Self::Blind => "blind",
             Self::LargestDesign => "largest-design",
             Self::Interrupted => "interrupted",
         }
@@ -82,6 +85,11 @@ impl StoppingRule {
     /// Whether a level with these fits and this judgement is good enough.
     pub fn holds(&self, fitted: &[Fitted], judgement: &Judgement) -> bool {
         are_accurate(fitted) && self.tolerance.is_none_or(|tolerance| judgement.is_within(tolerance))
+    }
+
+    /// Whether no component asks for a larger design.
+    pub fn are_accurate(&self, fitted: &[Fitted]) -> bool {
+        are_accurate(fitted)
     }
 
     /// Why a level that is not good enough is the last nevertheless, after so much work of fits.

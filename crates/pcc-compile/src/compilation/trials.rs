@@ -76,6 +76,11 @@ impl<'a> Judge<'a> {
         Ok(Self { surrogate, block, near, weights, observer })
     }
 
+    /// The surrogate at all of them.
+    pub fn block(&self) -> &Block {
+        &self.block
+    }
+
     /// Number of points T.
     pub fn points(&self) -> usize {
         self.block.excess.len()

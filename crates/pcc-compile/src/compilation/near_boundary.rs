@@ -1,0 +1,87 @@
+//! Points for runs near the stability boundary.
+//!
+//! The *zone* are the points of smallest |excess| among those at which shares are judged, with twice the probability of
+//! the rarer side, and at least twenty candidates per wanted run. Of these the one farthest from all runs and all that
+//! are chosen already is taken, again and again: the boundary is covered where no run is. The distance is that of
+//! standardized coordinates.
+
+use super::judged_points::judged_point;
+use super::trials::is_not_unstable;
+use crate::fitting::design::Samples;
+use pcc_evaluate::surrogate::Surrogate;
+
+/// Candidates per wanted run.
+const CANDIDATES: usize = 20;
+
+/// The standardized points of so many runs; `excess` is the surrogate's at the judged points, `tried` are the points of
+/// all runs.
+pub(super) fn near_boundary(surrogate: &Surrogate, excess: &[f64], tried: &Samples, wanted: usize) -> Vec<Vec<f64>> {
+    let candidates: Vec<Vec<f64>> = zone(excess, wanted).into_iter().map(|i| judged_point(surrogate, i)).collect();
+    let mut distances: Vec<f64> = candidates
+        .iter()
+        .map(|point| tried.points().map(|other| square_distance(point, other)).fold(f64::INFINITY, f64::min))
+        .collect();
+    let mut chosen = Vec::with_capacity(wanted);
+    for _ in 0..wanted {
+        let farther = |best: usize, at: usize| if distances[at] > distances[best] { at } else { best };
+        let Some(farthest) = (0..candidates.len()).reduce(farther).filter(|&at| distances[at] > 0.0) else { break };
+        let point = candidates[farthest].clone();
+        for (distance, candidate) in distances.iter_mut().zip(&candidates) {
+            *distance = distance.min(square_distance(candidate, &point));
+        }
+        chosen.push(point);
+    }
+    chosen
+}
+
+/// Numbers of the points of the zone.
+fn zone(excess: &[f64], wanted: usize) -> Vec<usize> {
+    let not_unstable = excess.iter().filter(|&&excess| is_not_unstable(excess)).count();
+    let rare = not_unstable.min(excess.len() - not_unstable);
+    let mut nearest: Vec<usize> = (0..excess.len()).collect();
+    nearest.sort_by(|&a, &b| excess[a].abs().total_cmp(&excess[b].abs()).then(a.cmp(&b)));
+    nearest.truncate((2 * rare).max(CANDIDATES * wanted));
+    nearest
+}
+
+fn square_distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compilation::judged_points::{POINTS, at_judged_points};
+    use pcc_evaluate::artifact::decode;
+    use pcc_evaluate::foundation::Silent;
+
+    #[test]
+    fn the_zone_has_twice_the_probability_of_the_rarer_side() {
+        // e = x − 0.97 on an even grid: 3 % are unstable.
+        let excess: Vec<f64> = (0..10_000).map(|i| (f64::from(i) + 0.5) / 10_000.0 - 0.97).collect();
+        let zone = zone(&excess, 3);
+        assert_eq!(zone.len(), 600);
+        assert!(zone.iter().all(|&i| (9_400..10_000).contains(&i)), "on both sides of the boundary");
+        let stable: Vec<f64> = excess.iter().map(|excess| excess - 1.0).collect();
+        let mut nearest = super::zone(&stable, 3);
+        nearest.sort_unstable();
+        assert_eq!(nearest, (9_940..10_000).collect::<Vec<_>>(), "without a boundary, those nearest to one");
+    }
+
+    #[test]
+    fn points_near_the_boundary_are_spread_along_it() {
+        let surrogate = decode(include_bytes!("../../../../surrogates/clutch-r2.pcc")).unwrap().surrogate;
+        let block = at_judged_points(&surrogate, POINTS, &Silent).unwrap();
+        let tried = Samples::new(2, vec![0.0, 0.0]);
+        let chosen = near_boundary(&surrogate, &block.excess, &tried, 6);
+        assert_eq!(chosen.len(), 6);
+        let mut nearest: Vec<f64> = block.excess.iter().map(|excess| excess.abs()).collect();
+        nearest.sort_by(f64::total_cmp);
+        let rare = block.excess.iter().filter(|&&excess| excess <= 0.0).count();
+        for (i, point) in chosen.iter().enumerate() {
+            let excess = surrogate.top(&surrogate.evaluate(point)).excess;
+            assert!(excess.abs() <= nearest[2 * rare], "{excess} at {point:?}");
+            assert!(chosen[..i].iter().all(|other| square_distance(point, other) > 0.04), "{chosen:?}");
+        }
+    }
+}
