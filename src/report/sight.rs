@@ -58,6 +58,17 @@ impl Sight {
                 let (nearest, error) = (significant(nearest, 3), at_most(error));
                 format!("{side} everywhere: {which} {what} {nearest} 1/s, error at most {error} 1/s")
             }
+            Self::Unknown { .. } => {
+                let (side, seen) = self.seen();
+                format!("{side} in a share that is not known; {seen}")
+            }
+        }
+    }
+
+    /// The rarer side, and how many runs have seen it.
+    fn seen(self) -> (&'static str, String) {
+        match self {
+            Self::Everywhere { .. } => ("", String::new()),
             Self::Unknown { unstable, runs } => {
                 let (rare, side) =
                     if 2 * unstable <= runs { (unstable, "unstable") } else { (runs - unstable, "stable") };
@@ -67,9 +78,15 @@ impl Sight {
                     1 => format!("only 1 of {runs} was {side}"),
                     few => format!("only {few} of {runs} were {side}"),
                 };
-                format!("{side} in a share that is not known; {seen}")
+                (side, seen)
             }
         }
+    }
+
+    /// A sentence to follow what samples say.
+    pub fn sentence(self) -> Option<String> {
+        let (side, seen) = self.seen();
+        self.is_unknown().then(|| format!("How often it is {side} is not known; {seen}."))
     }
 
     /// What to know before trusting the surrogate.

@@ -51,7 +51,8 @@ impl EvalReport {
             reasons.extend(indices.or(effects).and_then(|ranked| deciding_inputs(&ranked)));
         }
         let reasons = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join("; ")) };
-        format!("{}{where_asked} {}{reasons}.{}", self.study, self.shares(), self.unknown())
+        let sight = self.only_in_text.sight.and_then(Sight::sentence).map_or(String::new(), |text| format!(" {text}"));
+        format!("{}{where_asked} {}{reasons}.{sight}{}", self.study, self.shares(), self.unknown())
     }
 
     /// How often.
@@ -77,7 +78,7 @@ impl EvalReport {
             let is_seen = match sight {
                 Sight::Everywhere { nearest, .. } if nearest > 0.0 => self.unstable_proportion == 1.0,
                 Sight::Everywhere { .. } => self.unstable_proportion == 0.0 && self.marginal_proportion == 0.0,
-                Sight::Unknown { .. } => true,
+                Sight::Unknown { .. } => false,
             };
             if is_seen {
                 return format!("is {}", sight.words());

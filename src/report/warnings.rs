@@ -216,8 +216,8 @@ mod tests {
         let runs = surrogate.training.counts.values;
         assert_eq!(with_derivatives(surrogate.training.counts.gradients, runs), " with derivatives");
         surrogate.training.counts.gradients -= 2;
-        assert_eq!(with_derivatives(surrogate.training.counts.gradients, runs), ", 13 with derivatives");
-        let said = "in 2 of 15 model runs a group of modes came too close to other modes for derivatives";
+        assert_eq!(with_derivatives(surrogate.training.counts.gradients, runs), ", 11 with derivatives");
+        let said = "in 2 of 13 model runs a group of modes came too close to other modes for derivatives";
         assert!(FitReport::warnings_of(&surrogate)[0].starts_with(said));
 
         surrogate.training.counts.gradients += 2;

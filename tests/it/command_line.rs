@@ -785,6 +785,10 @@ fn studies_by_invariants_that_cannot_be_built_say_why() {
         ("a key of another method", format!("{study}[fit]\nq_norm = 0.5\n")),
         ("an unknown method", format!("{study}[fit]\nmethod = \"lasso\"\n")),
         ("a tolerance too small to be estimated", format!("{study}[fit]\nproportion_tolerance = 1e-9\n")),
+        ("no tolerance", format!("{study}[fit]\nproportion_tolerance = 0.0\n")),
+        ("a tolerance of more than all", format!("{study}[fit]\nproportion_tolerance = 1.5\n")),
+        ("runs at another place", format!("{study}[fit]\nenrich = \"everywhere\"\n")),
+        ("a place that is a number", format!("{study}[fit]\nenrich = 3\n")),
         (
             "derivatives of eigenvalues",
             format!("{}[fit]\nderivatives = true\n", study.replace("\"invariants\"", "\"eigenvalues\"")),

@@ -17,11 +17,11 @@
 //!
 //! where k is the effective number of residuals, of which few may all be small by chance, and T the number of points:
 //! shares below 1/T are not seen. (That part is reported, but no reason for more runs.) Where all else is small enough,
-//! T grows until a thousand points lie on the rarer side, or as many are evaluated as a few seconds allow. The change between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean
-//! |Δp| of this level and m′ that of the one before: of a difference of two independent errors of these sizes, this is
-//! the share of the smaller one. And f is the share of runs that the model itself calls otherwise than the modes the
-//! surrogate carries: modes left out, or real eigenvalues. More runs do not lower f, so the build does not ask for
-//! them.
+//! T grows until a thousand points lie on the rarer side, or as many are evaluated as a few seconds allow. The change
+//! between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean |Δp| of this level and m′ that of
+//! the one before: of a difference of two independent errors of these sizes, this is the share of the smaller one. And
+//! f is the share of runs that the model itself calls otherwise than the modes the surrogate carries: modes left out,
+//! or real eigenvalues. More runs do not lower f, so the build does not ask for them.
 //!
 //! Residuals of points that chose the settings of a fit flatter it, so rms and mean use blind residuals
 //! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the
@@ -122,7 +122,7 @@ pub(super) struct Judgement {
     pub is_doubtful: bool,
     /// What the runs have seen, if they were left out one by one.
     pub sight: Option<Sight>,
-    /// The excess at the judged points, of a blind level.
+    /// The excess at the judged points, if the study asks for an error.
     pub excess: Vec<f64>,
     /// For the next level.
     pub previous: Option<Previous>,
@@ -212,7 +212,7 @@ pub(super) fn judge(
         found = Found::by(&judge, &residuals, before, forgotten)?;
         judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful) };
     }
-    if sight.is_blind() {
+    if purpose.tolerance.is_some() {
         judgement.excess.clone_from(&judge.block().excess);
     }
     let share = found.share;

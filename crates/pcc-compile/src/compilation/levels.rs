@@ -17,7 +17,7 @@ use super::{BuildError, Built, record, rigid_body_modes};
 use crate::campaign::Campaign;
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::Target;
-use crate::study::Study;
+use crate::study::{Enrich, Study};
 use pcc_evaluate::components::Output;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::{Observer, is_interruption};
@@ -32,6 +32,13 @@ const CLEAR_BATCHES: usize = 2;
 
 /// Runs of a batch, at least; else as many as inputs, but no more than a level of the design has.
 const LEAST_BATCH: usize = 3;
+
+/// Below this share, runs near the boundary are worth more than those of the design; of a fifth they gain nothing.
+const RARE: f64 = 0.1;
+
+/// After so many batches that have not lowered the error, or not found the rarer side, a level is one of the design,
+/// which may find it where none looked.
+const IDLE_BATCHES: usize = 3;
 
 /// Blind builds end, unless the study says how many runs they are worth, before the design has more than so many times
 /// the runs of its second level.
@@ -94,6 +101,11 @@ struct Levels<'a> {
     growth: Growth,
     /// Batches of runs near the boundary, one after the other, that have found it nowhere.
     clear_batches: usize,
+    /// The smallest estimated error so far, and batches since.
+    least_error: f64,
+    idle_batches: usize,
+    /// Batches since the last level of the design.
+    batches: usize,
     /// What the runs of the last level have seen.
     sight: Option<Sight>,
     grouping: Vec<Output>,
@@ -117,6 +129,9 @@ impl<'a> Levels<'a> {
             sizes: Vec::new(),
             growth: Growth::Design(study.design.initial),
             clear_batches: 0,
+            least_error: f64::INFINITY,
+            idle_batches: 0,
+            batches: 0,
             sight: None,
             grouping: Vec::new(),
             previous: None,
@@ -134,6 +149,7 @@ impl<'a> Levels<'a> {
             Growth::Design(size) => self.evaluations.grow_to(*size, observer).map(|()| false)?,
             Growth::Batch(points) => self.evaluations.add(points, observer).map(|()| true)?,
         };
+        self.batches = if is_batch { self.batches + 1 } else { 0 };
         let size = self.evaluations.sizes().iter().sum();
         self.sizes.push(size as u64);
         self.spent.runs += start.elapsed();
@@ -172,6 +188,9 @@ impl<'a> Levels<'a> {
         let former = std::mem::replace(&mut self.sight, judgement.sight.filter(|_| tolerance.is_some()));
         let is_clear = self.sight.is_some_and(|sight| sight.is_blind() && sight.clearance.is_some());
         self.clear_batches = if is_clear { self.clear_batches + usize::from(is_batch) } else { 0 };
+        let error = judgement.error.unwrap_or(f64::INFINITY);
+        self.idle_batches = if error < self.least_error { 0 } else { self.idle_batches + usize::from(is_batch) };
+        self.least_error = self.least_error.min(error);
         let is_enough = match self.clear_batches >= CLEAR_BATCHES {
             true => self.stopping.are_accurate(&results),
             false => self.stopping.holds(&results, &judgement),
@@ -201,6 +220,19 @@ impl<'a> Levels<'a> {
         Ok(None)
     }
 
+    /// Whether a blind level should look near the boundary: while nothing comes near it, while that finds the rarer
+    /// side, and some times after each level of the design, as often as there are signs of it; unless the next level of
+    /// the design is needed anyway and should see enough.
+    fn is_worth_looking(&self, sight: Sight, former: Option<Sight>, share: f64, judgement: &Judgement) -> bool {
+        let is_soon_seen = self.next_design().is_some_and(|size| share * size as f64 >= LEAST_RARE as f64);
+        if is_soon_seen && !judgement.would_be_within(self.study.fit.proportion_tolerance) {
+            return false;
+        }
+        let has_found = former.is_some_and(|former| sight.rare() > former.rare());
+        let most = if share > 0.0 || sight.rare() > 0 { IDLE_BATCHES } else { 1 };
+        sight.clearance.is_some() || has_found || self.batches < most
+    }
+
     /// The size of the next design: with the runs near the boundary it is not larger than the study allows.
     fn next_design(&self) -> Option<usize> {
         let [of_design, chosen] = self.evaluations.sizes();
@@ -208,22 +240,22 @@ impl<'a> Levels<'a> {
         self.study.design.next_size(of_design).map(|size| size.min(most)).filter(|&size| size > of_design)
     }
 
-    /// Points near the boundary for the next runs. A blind level takes them while nothing comes near the boundary, while
-    /// they find the rarer side, and after each level of the design; unless the next of these should see enough of it.
+    /// Points near the boundary for the next runs, if they are worth more than a level of the design.
     fn batch(&self, surrogate: &Surrogate, judgement: &Judgement, former: Option<Sight>) -> Option<Vec<Vec<f64>>> {
-        let sight = judgement.sight.filter(|sight| sight.is_blind())?;
+        let sight = judgement.sight.filter(|_| self.study.fit.enrich == Enrich::Decision)?;
         let share = judgement.share.map_or(0.0, |share| share.not_unstable.min(1.0 - share.not_unstable));
-        let is_soon_seen = self.next_design().is_some_and(|size| share * size as f64 >= LEAST_RARE as f64);
-        let is_worth_it = match (&self.growth, former) {
-            (Growth::Batch(_), Some(former)) => sight.clearance.is_some() || sight.rare() > former.rare(),
-            _ => true,
+        let is_worth_it = match sight.is_blind() {
+            _ if sight.is_marginal => false,
+            true => self.is_worth_looking(sight, former, share, judgement),
+            false => share < RARE && (self.batches == 0 || self.idle_batches < IDLE_BATCHES),
         };
-        if !is_worth_it || (is_soon_seen && !judgement.would_be_within(self.study.fit.proportion_tolerance)) {
+        if !is_worth_it {
             return None;
         }
         let room = self.study.design.maximum.saturating_sub(self.evaluations.sizes().iter().sum());
         let wanted = self.study.inputs.dimension().max(LEAST_BATCH).min(self.study.design.step).min(room);
-        let points = near_boundary(surrogate, &judgement.excess, &self.evaluations.points(), wanted);
+        let points =
+            near_boundary(surrogate, &judgement.excess, &self.evaluations.points(), (wanted, sight.is_blind()));
         Some(points).filter(|points| !points.is_empty())
     }
 

@@ -3,7 +3,8 @@
 //! The *zone* are the points of smallest |excess| among those at which shares are judged, with twice the probability of
 //! the rarer side, and at least twenty candidates per wanted run. Of these the one farthest from all runs and all that
 //! are chosen already is taken, again and again: the boundary is covered where no run is. The distance is that of
-//! standardized coordinates.
+//! standardized coordinates. A level that has not seen enough of the rarer side takes every second point there: left to
+//! themselves, the farthest points of the zone lie around it.
 
 use super::judged_points::judged_point;
 use super::trials::is_not_unstable;
@@ -14,17 +15,28 @@ use pcc_evaluate::surrogate::Surrogate;
 const CANDIDATES: usize = 20;
 
 /// The standardized points of so many runs; `excess` is the surrogate's at the judged points, `tried` are the points of
-/// all runs.
-pub(super) fn near_boundary(surrogate: &Surrogate, excess: &[f64], tried: &Samples, wanted: usize) -> Vec<Vec<f64>> {
-    let candidates: Vec<Vec<f64>> = zone(excess, wanted).into_iter().map(|i| judged_point(surrogate, i)).collect();
+/// all runs. Every second one is on the rarer side, if the level `is_blind` and there are any.
+pub(super) fn near_boundary(
+    surrogate: &Surrogate,
+    excess: &[f64],
+    tried: &Samples,
+    (wanted, is_blind): (usize, bool),
+) -> Vec<Vec<f64>> {
+    let zone = zone(excess, wanted);
+    let not_unstable = excess.iter().filter(|&&excess| is_not_unstable(excess)).count();
+    let is_rare = |k: &usize| is_not_unstable(excess[zone[*k]]) == (2 * not_unstable < excess.len());
+    let candidates: Vec<Vec<f64>> = zone.iter().map(|&i| judged_point(surrogate, i)).collect();
     let mut distances: Vec<f64> = candidates
         .iter()
         .map(|point| tried.points().map(|other| square_distance(point, other)).fold(f64::INFINITY, f64::min))
         .collect();
     let mut chosen = Vec::with_capacity(wanted);
-    for _ in 0..wanted {
+    for turn in 0..wanted {
         let farther = |best: usize, at: usize| if distances[at] > distances[best] { at } else { best };
-        let Some(farthest) = (0..candidates.len()).reduce(farther).filter(|&at| distances[at] > 0.0) else { break };
+        let of_all = || (0..candidates.len()).reduce(farther);
+        let of_rare = || (0..candidates.len()).filter(is_rare).reduce(farther);
+        let farthest = if is_blind && turn % 2 == 0 { of_rare().or_else(of_all) } else { of_all() };
+        let Some(farthest) = farthest.filter(|&at| distances[at] > 0.0) else { break };
         let point = candidates[farthest].clone();
         for (distance, candidate) in distances.iter_mut().zip(&candidates) {
             *distance = distance.min(square_distance(candidate, &point));
@@ -73,7 +85,7 @@ mod tests {
         let surrogate = decode(include_bytes!("../../../../surrogates/clutch-r2.pcc")).unwrap().surrogate;
         let block = at_judged_points(&surrogate, POINTS, &Silent).unwrap();
         let tried = Samples::new(2, vec![0.0, 0.0]);
-        let chosen = near_boundary(&surrogate, &block.excess, &tried, 6);
+        let chosen = near_boundary(&surrogate, &block.excess, &tried, (6, false));
         assert_eq!(chosen.len(), 6);
         let mut nearest: Vec<f64> = block.excess.iter().map(|excess| excess.abs()).collect();
         nearest.sort_by(f64::total_cmp);
@@ -83,5 +95,15 @@ mod tests {
             assert!(excess.abs() <= nearest[2 * rare], "{excess} at {point:?}");
             assert!(chosen[..i].iter().all(|other| square_distance(point, other) > 0.04), "{chosen:?}");
         }
+    }
+
+    #[test]
+    fn a_blind_level_takes_every_second_point_on_the_rarer_side() {
+        let surrogate = decode(include_bytes!("../../../../surrogates/clutch-r2.pcc")).unwrap().surrogate;
+        let block = at_judged_points(&surrogate, POINTS, &Silent).unwrap();
+        let tried = Samples::new(2, vec![0.0, 0.0]);
+        let chosen = near_boundary(&surrogate, &block.excess, &tried, (6, true));
+        let is_stable = |point: &Vec<f64>| surrogate.top(&surrogate.evaluate(point)).excess <= 0.0;
+        assert!(chosen.iter().step_by(2).all(is_stable) && chosen.len() == 6, "a fifth is stable: {chosen:?}");
     }
 }

@@ -6,7 +6,7 @@ use super::defaults;
 use super::error::StudyError;
 use super::model::ModelSettings;
 use super::raw::{FitValue, Ordered};
-use super::settings::{Derivatives, FitSettings};
+use super::settings::{Derivatives, Enrich, FitSettings};
 use super::validate::{Lines, alternatives};
 use crate::fitting::fit::FitMethod;
 use crate::fitting::fit::method::{Design, Domain, Entry, Given, Key, METHODS, Value};
@@ -19,6 +19,7 @@ const LARGEST_MATRIX: f64 = 2.5e8;
 const METHOD: &str = "method";
 const DERIVATIVES: &str = "derivatives";
 const TOLERANCE: &str = "proportion_tolerance";
+const ENRICH: &str = "enrich";
 
 impl Lines<'_> {
     pub(super) fn fit(
@@ -42,7 +43,8 @@ impl Lines<'_> {
                 defaults::proportion_tolerance(with_derivatives, entry.name)
             }),
         };
-        let settings = raw.iter().filter(|(key, _)| ![METHOD, DERIVATIVES, TOLERANCE].contains(&key.as_str()));
+        let enrich = find(ENRICH).map_or(Ok(Enrich::default()), |value| self.enrich(value, entry))?;
+        let settings = raw.iter().filter(|(key, _)| ![METHOD, DERIVATIVES, TOLERANCE, ENRICH].contains(&key.as_str()));
         let method = self.settings(entry, settings, inputs)?;
         match derivatives_place {
             Some(place) if derivatives == Derivatives::Always && !model.has_derivatives() => {
@@ -53,9 +55,9 @@ impl Lines<'_> {
             }
             // Values alone, whatever is asked for.
             _ if !method.can_use_derivatives() => {
-                Ok(FitSettings { method, proportion_tolerance, derivatives: Derivatives::Auto })
+                Ok(FitSettings { method, proportion_tolerance, derivatives: Derivatives::Auto, enrich })
             }
-            _ => Ok(FitSettings { method, proportion_tolerance, derivatives }),
+            _ => Ok(FitSettings { method, proportion_tolerance, derivatives, enrich }),
         }
     }
 
@@ -91,6 +93,17 @@ impl Lines<'_> {
             Value::Number(tolerance) => Ok(tolerance),
             _ => Err(self.wrong_value("fit.proportion_tolerance", value, "a number".to_owned())),
         }
+    }
+
+    fn enrich(&self, value: &Spanned<FitValue>, entry: &Entry) -> Result<Enrich, StudyError> {
+        const WORDS: [Enrich; 2] = [Enrich::Decision, Enrich::None];
+        const KEY: Key = Key { name: ENRICH, domain: Domain::Word(&["decision", "none"]) };
+        if !entry.grows {
+            return Err(self.key_of_method(&KEY, value, |entry| entry.grows));
+        }
+        let word = self.within(&KEY, value)?;
+        let named = |enrich: &Enrich| matches!(&word, Value::Word(word) if word == enrich.name());
+        Ok(WORDS.into_iter().find(named).unwrap_or_default())
     }
 
     fn derivatives(&self, value: &Spanned<FitValue>, target: Target) -> Result<Derivatives, StudyError> {
@@ -177,7 +190,7 @@ impl Lines<'_> {
     }
 
     fn unknown_key(&self, name: &str, value: &Spanned<FitValue>) -> StudyError {
-        let mut known = vec![METHOD, DERIVATIVES, TOLERANCE];
+        let mut known = vec![METHOD, DERIVATIVES, TOLERANCE, ENRICH];
         for key in METHODS.iter().flat_map(|entry| entry.keys) {
             if !known.contains(&key.name) {
                 known.push(key.name);

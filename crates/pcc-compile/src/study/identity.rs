@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::model::identity;
 use super::{DependenceSettings, Study};
+use super::settings::Enrich;
 use crate::fitting::fit::method::Value;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;
@@ -31,6 +32,9 @@ pub(super) fn study_hash(study: &Study) -> String {
     text.push('\n');
     if study.spectrum.target != Target::Eigenvalues {
         let _ = writeln!(text, "derivatives {}", study.uses_derivatives());
+    }
+    if fit.enrich != Enrich::default() {
+        let _ = writeln!(text, "enrich {}", fit.enrich.name());
     }
     if let Some(tolerance) = fit.proportion_tolerance {
         let _ = writeln!(text, "proportion tolerance {tolerance:?}");

@@ -24,7 +24,7 @@ pub use measured::TableError;
 pub use model::{Command, ModelSettings, Table};
 #[cfg(feature = "schema")]
 pub use schema::schema;
-pub use settings::{Derivatives, DesignKind, DesignSettings, FitSettings, SpectrumSettings};
+pub use settings::{Derivatives, DesignKind, DesignSettings, Enrich, FitSettings, SpectrumSettings};
 
 use crate::mechanics::model::matrices::Matrices;
 use crate::mechanics::model::{Clutch, Model, ModelError, TableModel};

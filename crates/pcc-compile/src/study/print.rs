@@ -105,6 +105,15 @@ fn fit(file: &mut Printer, study: &Study) {
         None if fit.method.has_fixed_design() => {}
         None => file.line("# proportion_tolerance", "0.0005", &format!("{tolerance}; not used unless written")),
     }
+    enrich(file, study);
+}
+
+/// Runs beside those of the design are made for the tolerance.
+fn enrich(file: &mut Printer, study: &Study) {
+    if study.fit.proportion_tolerance.is_some() {
+        let explanation = "runs near the boundary where the rarer side is rare or not seen; or \"none\"";
+        file.line("enrich", format!("{:?}", study.fit.enrich.name()), explanation);
+    }
 }
 
 fn inputs(file: &mut Printer, study: &Study) {

@@ -222,6 +222,8 @@ struct EveryMethod {
     _method: Option<String>,
     #[serde(rename = "proportion_tolerance")]
     _proportion_tolerance: Option<f64>,
+    #[serde(rename = "enrich")]
+    _enrich: Option<String>,
     #[serde(rename = "derivatives")]
     _derivatives: Option<Derivatives>,
 }

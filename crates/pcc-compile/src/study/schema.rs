@@ -493,6 +493,9 @@ impl JsonSchema for Fit {
             "proportion_tolerance".into(),
             json!({"description": tolerance, "type": "number", "exclusiveMinimum": 0}),
         );
+        let enrich = "Where runs are made beside those of the design: near the boundary of stability, where the rarer side \
+                      is rare or not seen (\"decision\", default), or nowhere.";
+        properties.insert("enrich".into(), json!({"description": enrich, "enum": ["decision", "none"]}));
         for entry in &METHODS {
             for key in entry.keys {
                 let of: Vec<&str> =

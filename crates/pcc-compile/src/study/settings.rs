@@ -73,6 +73,28 @@ pub struct FitSettings {
     pub proportion_tolerance: Option<f64>,
     /// Whether derivatives of the components enter the fit.
     pub derivatives: Derivatives,
+    /// Where runs are made beside those of the design.
+    pub enrich: Enrich,
+}
+
+/// Where runs are made beside those of the design.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Enrich {
+    /// Near the boundary of stability, where the rarer side is rare or has not been seen.
+    #[default]
+    Decision,
+    /// Nowhere.
+    None,
+}
+
+impl Enrich {
+    /// Its word in a study.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Decision => "decision",
+            Self::None => "none",
+        }
+    }
 }
 
 impl FitSettings {
