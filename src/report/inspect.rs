@@ -2,8 +2,8 @@
 
 use super::build::{level_list, with_derivatives};
 use super::certify::CertificateReport;
-use super::dependence::DependenceReport;
 use super::confidence::known_error;
+use super::dependence::DependenceReport;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
 use super::layout::{Facts, width, write_verdict, write_warnings};

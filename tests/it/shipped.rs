@@ -8,7 +8,16 @@ use std::fmt::Write;
 /// What is shipped: the clutch by the paper's method and by invariants, and systems by matrices.
 fn names() -> impl Iterator<Item = String> {
     let clutches = (1..=8).flat_map(|inputs| ["-eigenvalues", ""].map(|kind| format!("clutch-r{inputs}{kind}")));
-    let systems = ["clutch-matrices", "mode-coupling", "three-modes", "flutter", "rotor", "block"];
+    let systems = [
+        "clutch-normal-r8",
+        "rotor-measured",
+        "clutch-matrices",
+        "mode-coupling",
+        "three-modes",
+        "flutter",
+        "rotor",
+        "block",
+    ];
     clutches.chain(systems.map(str::to_owned))
 }
 

@@ -3,8 +3,8 @@
 //! Where fewer than three runs lie on the rarer side, nothing tells how far the share is off: residuals are those of
 //! the other side. Such a level is *blind*, and no error is small enough. If none of the runs lies there, the share can
 //! still be known to be zero, by the distance from the boundary. Every group of eigenvalues g has an excess at a point,
-//! the largest of its eigenvalues, e_g, and a largest left-out error of that at the runs, ε_g. Nothing is unstable if at
-//! every point at which shares are judged
+//! the largest of its eigenvalues, e_g, and a largest left-out error of that at the runs, ε_g. Nothing is unstable if
+//! at every point at which shares are judged
 //!
 //! e_g < −10 ε_g for every group that may come out on top, e_g + 3 ε_g ≥ max_h (e_h − 3 ε_h),
 //!

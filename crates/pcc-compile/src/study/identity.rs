@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::model::identity;
-use super::{DependenceSettings, Study};
 use super::settings::Enrich;
+use super::{DependenceSettings, Study};
 use crate::fitting::fit::method::Value;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;

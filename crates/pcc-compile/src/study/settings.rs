@@ -68,8 +68,8 @@ impl DesignSettings {
 pub struct FitSettings {
     /// Fitting method with its settings.
     pub method: FitMethod,
-    /// Estimated error of the share p of points that are not unstable at which the design is large enough, as a fraction
-    /// of √(p (1 − p)), in (0, 1\]; without it the fits of the components alone decide.
+    /// Estimated error of the share p of points that are not unstable at which the design is large enough, as a
+    /// fraction of √(p (1 − p)), in (0, 1\]; without it the fits of the components alone decide.
     pub proportion_tolerance: Option<f64>,
     /// Whether derivatives of the components enter the fit.
     pub derivatives: Derivatives,

@@ -17,8 +17,8 @@ pub const MAJOR: u16 = 1;
 /// * 2: several elements, where errors of an expansion are relative to the variance over all of them; three reasons why
 ///   the search for an expansion ended that full expansions have.
 /// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10; section 9 in
-///   version 2, with bounds of all shares and strata; a search that ended because errors no longer fell; sections 11 to 13; laws
-///   other than the uniform one in section 2, and dependence.
+///   version 2, with bounds of all shares and strata; a search that ended because errors no longer fell; sections 11
+///   to 13; laws other than the uniform one in section 2, and dependence.
 pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers

@@ -18,8 +18,9 @@ pub const LEAST_VALUES: usize = 10;
 /// Values closer than this share of h become one in the sums, with its weight.
 const CLOSE: f64 = 0.1;
 
-/// Kernels farther than so many of their standard deviations add nothing, unless all do.
-const FAR: f64 = 9.0;
+/// A kernel of which the square of the distance is so many squared standard deviations above that of the nearest adds
+/// nothing: e^−45 of what that does.
+const FAR: f64 = 9.5;
 
 /// Whether and how measured values are smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,15 +159,13 @@ impl Density for Kernels {
 
     fn log_density(&self, place: Place) -> f64 {
         let exponent = |center: f64| -0.5 * ((place.x - center) / self.width).powi(2);
-        let reach = FAR * self.width;
+        let above = self.centers.partition_point(|center| *center < place.x);
+        let neighbours = &self.centers[above.saturating_sub(1)..(above + 1).min(self.centers.len())];
+        let distance = neighbours.iter().map(|center| (center - place.x).abs()).fold(f64::INFINITY, f64::min);
+        let reach = distance.hypot(FAR * self.width);
         let from = self.centers.partition_point(|center| *center < place.x - reach);
         let to = self.centers.partition_point(|center| *center <= place.x + reach);
-        // Beyond all kernels the nearest few count.
-        let (from, to) = match from < to {
-            true => (from, to),
-            false => (from.saturating_sub(1), (to + 1).min(self.centers.len())),
-        };
-        let nearest = self.centers[from..to].iter().map(|center| exponent(*center)).fold(f64::NEG_INFINITY, f64::max);
+        let nearest = -0.5 * (distance / self.width).powi(2);
         let terms = self.centers[from..to].iter().zip(&self.weights[from..to]);
         let sum: f64 = terms.map(|(center, weight)| weight * (exponent(*center) - nearest).exp()).sum();
         nearest + sum.ln()
