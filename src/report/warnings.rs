@@ -40,7 +40,6 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
         "fits-cost-more" => {
             "because fits take far longer than the runs of this model; set design.maximum to let it go on"
         }
-        "blind" => "because more runs have not found the rarer side; set design.maximum to let it go on",
         "largest-design" => "because design.maximum allows no more",
         "interrupted" => "because it was stopped",
         other => other,
@@ -163,7 +162,9 @@ impl FitReport {
             );
         }
         warnings.extend(Self::distrusted(surrogate));
-        warnings.extend(ended_early(surrogate).map(|reason| ended(reason, surrogate)));
+        // Of a blind build all is said by what is not known.
+        let reason = ended_early(surrogate).filter(|reason| *reason != "blind");
+        warnings.extend(reason.map(|reason| ended(reason, surrogate)));
         let sight = Sight::of(surrogate);
         warnings.extend(sight.and_then(Sight::warning));
         let smallest = SmallestShare::of(surrogate);

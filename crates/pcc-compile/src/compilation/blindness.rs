@@ -1,10 +1,10 @@
 //! Whether the runs have seen the rarer of stable and unstable, and what is known of it if they have not.
 //!
-//! Where fewer than three runs lie on the rarer side, nothing tells how far the share is off: residuals are those of
-//! the other side. Such a level is *blind*, and no error is small enough. If none of the runs lies there, the share can
-//! still be known to be zero, by the distance from the boundary. Every group of eigenvalues g has an excess at a point,
-//! the largest of its eigenvalues, e_g, and a largest left-out error of that at the runs, ε_g. Nothing is unstable if
-//! at every point at which shares are judged
+//! Where fewer than three runs lie on the rarer side, nothing tells how far the share is off: residuals are those
+//! of the other side. Such a level is *blind*, and no error is small enough. If none of the runs lies there, the
+//! share can still be known to be zero, by the distance from the boundary. Every group of eigenvalues g has an
+//! excess at a point, the largest of its eigenvalues, e_g, and a largest left-out error of that at the runs, ε_g.
+//! Nothing is unstable if at every point at which shares are judged
 //!
 //! e_g < −10 ε_g for every group that may come out on top, e_g + 3 ε_g ≥ max_h (e_h − 3 ε_h),
 //!
@@ -14,11 +14,10 @@ use super::trials::is_not_unstable;
 use pcc_evaluate::components::{Block, Output, beyond_rounding};
 use pcc_evaluate::surrogate::{Surrogate, VerdictBasis};
 
-/// Runs on the rarer side below which a level is blind: of two, a jackknife still says nothing.
+/// Runs on the rarer side below which a level is blind.
 pub(super) const LEAST_RARE: usize = 3;
 
-/// Left-out errors within which zero may be reached: largest errors of designs of five runs per input have been
-/// exceeded five times elsewhere.
+/// Left-out errors within which zero may be reached: well above the three of [`ON_TOP`], since one point is enough.
 const FAR: f64 = 10.0;
 
 /// Left-out errors within which another group may be on top: errors are seldom three times those left out.
