@@ -81,7 +81,7 @@ fn a_clutch_with_little_friction_is_stable_everywhere() {
     let (nearest, error) = (number(&surrogate, "nearest_excess"), number(&surrogate, "nearest_error"));
     let runs = surrogate.training.counts.direct_computations;
     println!("{runs} runs, {nearest} ± {error}");
-    // Half as many more than version 0.1.0, and two batches.
+    // Half as many more than by the estimate alone, and two batches.
     assert!(runs <= 17 + 8 + 6, "{runs} runs");
     assert_eq!(compared.unstable(), [0.0; 2]);
     assert!(nearest < -10.0 * error && error > 0.0);
@@ -89,7 +89,7 @@ fn a_clutch_with_little_friction_is_stable_everywhere() {
     assert_eq!(FitReport::warnings_of(&surrogate), Vec::<String>::new());
 }
 
-/// With eight inputs 0.42 % flutter: no run of the first levels does, and version 0.1.0 ended there.
+/// With eight inputs 0.42 % flutter: fewer than three runs of the first levels do, and builds once ended there.
 #[test]
 fn rare_flutter_of_the_clutch_is_found_near_the_boundary() {
     let study = Study::from_toml(&little_friction(8)).unwrap();
@@ -146,7 +146,7 @@ fn an_undamped_chain_is_marginal_with_no_runs_for_it() {
     assert!(surrogate.is_undamped());
     assert_eq!(setting(&surrogate, "unstable_runs"), None, "marginal is the result");
     assert_eq!(setting(&surrogate, "runs_near_boundary"), None);
-    assert_eq!(surrogate.training.counts.direct_computations, 17, "as in version 0.1.0");
+    assert_eq!(surrogate.training.counts.direct_computations, 17, "as by the estimate alone");
     let damped = build(&chain("C = { diagonal = [0.1, 0.1, 0.1] }\n"));
     assert!((number(&damped, "nearest_excess") + 0.05).abs() < 1e-6);
 }

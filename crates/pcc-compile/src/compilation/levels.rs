@@ -33,8 +33,8 @@ const CLEAR_BATCHES: usize = 2;
 /// Runs of a batch, at least; else as many as inputs, but no more than a level of the design has.
 const LEAST_BATCH: usize = 3;
 
-/// Below this share, runs near the boundary are worth more than those of the design: of a tenth, the clutch with scatter
-/// takes 18 runs instead of 24. Of a fifth they gain nothing.
+/// Below this share, runs near the boundary are worth more than those of the design: of a tenth, the clutch with
+/// scatter takes 18 to 24 runs, without them 24. Of a fifth they gain nothing.
 const RARE: f64 = 0.19;
 
 /// After so many batches that have not lowered the error, or not found the rarer side, a level is one of the design,
@@ -225,7 +225,8 @@ impl<'a> Levels<'a> {
     /// side, and some times after each level of the design, as often as there are signs of it; unless the next level of
     /// the design is needed anyway and should see enough.
     fn is_worth_looking(&self, sight: Sight, former: Option<Sight>, share: f64, judgement: &Judgement) -> bool {
-        let is_soon_seen = self.next_design().is_some_and(|size| share * size as f64 >= LEAST_RARE as f64);
+        let next = self.next_design().filter(|&size| !self.is_too_large_for_blind(size));
+        let is_soon_seen = next.is_some_and(|size| share * size as f64 >= LEAST_RARE as f64);
         if is_soon_seen && !judgement.would_be_within(self.study.fit.proportion_tolerance) {
             return false;
         }
@@ -260,12 +261,15 @@ impl<'a> Levels<'a> {
         Some(points).filter(|points| !points.is_empty())
     }
 
-    /// Whether the rarer side has been looked for long enough, where the study does not say how long.
+    /// Whether the rarer side has been looked for long enough.
     fn is_blind_for_good(&self, growth: &Growth) -> bool {
         let is_blind = self.sight.is_some_and(|sight| sight.is_blind());
-        let second = self.study.design.initial + self.study.design.step;
-        let is_large = matches!(growth, Growth::Design(size) if *size > BLIND_GROWTH * second);
-        is_blind && is_large && !self.study.limits_runs()
+        is_blind && matches!(growth, Growth::Design(size) if self.is_too_large_for_blind(*size))
+    }
+
+    /// Whether blind builds end before a design of this size, unless the study says how many runs it is worth.
+    fn is_too_large_for_blind(&self, size: usize) -> bool {
+        size > BLIND_GROWTH * (self.study.design.initial + self.study.design.step) && !self.study.limits_runs()
     }
 
     /// The best level so far, the last of about equal ones, with what later runs say of its error.
