@@ -268,7 +268,7 @@ pub enum StudyError {
         place: Place,
         /// Why.
         #[source]
-        cause: TableError,
+        cause: Box<TableError>,
     },
     /// A unit or label that cannot be shown.
     #[error("{place}: {cause}")]

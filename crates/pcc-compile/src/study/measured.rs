@@ -71,8 +71,10 @@ impl Lines<'_> {
             .map(|word| self.word(&format!("{key}.smoothing"), word, &Smoothing::ALL))
             .transpose()?
             .unwrap_or(Smoothing::Kernel);
-        let values = values(file, input.column.as_deref(), folder)
-            .map_err(|cause| StudyError::Table { place: self.place(format!("{key}.file"), file), cause })?;
+        let values = values(file, input.column.as_deref(), folder).map_err(|cause| StudyError::Table {
+            place: self.place(format!("{key}.file"), file),
+            cause: Box::new(cause),
+        })?;
         let bound = |wanted: &str| given.iter().find(|(name, _)| *name == wanted).map(|(_, value)| *value);
         let source = Source { file: file.get_ref().clone(), column: input.column.clone() };
         Ok(Marginal::measured(&values, [bound("lower"), bound("upper")], smoothing, Some(source)))
