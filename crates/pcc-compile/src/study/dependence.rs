@@ -138,6 +138,14 @@ pub enum DependenceError {
         /// The other.
         other: String,
     },
+    /// An input of single values, whose ranks have ties.
+    #[error(
+        "{name} takes single values, which have no such correlation; correlate inputs that take all values between"
+    )]
+    SingleValues {
+        /// The input.
+        name: String,
+    },
     /// Correlations that contradict each other.
     #[error(
         "these correlations cannot hold together: the smallest eigenvalue of their matrix{}, but must be positive{}",
@@ -237,6 +245,10 @@ fn pair(
     let is_correlation = value.abs() < 1.0;
     if !is_correlation {
         return Err(DependenceError::Value { one, other, value: *value });
+    }
+    if let Some(input) = [first, second].map(|at| &inputs.inputs()[at]).into_iter().find(|it| it.marginal.is_discrete())
+    {
+        return Err(DependenceError::SingleValues { name: input.name.clone() });
     }
     match measure.of_scores(inputs, [first, second], *value) {
         Ok(score) => Ok(((first, second, *value), score)),
