@@ -7,7 +7,7 @@ use super::dependence::DependenceReport;
 use super::fit::FitReport;
 use super::judgement::{MarginReport, judged_by, outside_band};
 use super::layout::{Facts, width, write_verdict, write_warnings};
-use super::numbers::significant;
+use super::numbers::{share, significant};
 use super::sight::Sight;
 use super::smallest_share::{SmallestShare, estimated_error};
 use super::table::{Align, Table};
@@ -119,6 +119,9 @@ pub struct InputReport {
     pub distribution: &'static str,
     /// Its parameters.
     pub parameters: BTreeMap<String, f64>,
+    /// The levels of a discrete law; absent of others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub levels: Vec<LevelReport>,
     /// Lower bound; null if there is none.
     pub lower: Option<f64>,
     /// Upper bound; null if there is none.
@@ -127,6 +130,16 @@ pub struct InputReport {
     pub trained: Option<TrainedReport>,
     /// Polynomial family.
     pub family: &'static str,
+}
+
+/// A single value that an input can take.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LevelReport {
+    /// The value.
+    pub value: f64,
+    /// Its probability.
+    pub proportion: f64,
 }
 
 /// Between which values of an input the model was run.
@@ -242,12 +255,21 @@ fn input(surrogate: &Surrogate, j: usize) -> InputReport {
     let input = &surrogate.inputs.inputs()[j];
     let [lower, upper] = input.marginal.support().map(|end| end.is_finite().then_some(end));
     let parameter = |(name, value): (&'static str, f64)| (name.to_owned(), value);
+    let all = input.marginal.parameters();
+    let of = |wanted: &'static str| all.iter().filter(move |(name, _)| *name == wanted).map(|(_, value)| *value);
+    let levels = of("value").zip(of("weight")).map(|(value, proportion)| LevelReport { value, proportion }).collect();
     InputReport {
         name: input.name.clone(),
         label: input.description.label().map(str::to_owned),
         unit: input.description.unit().map(str::to_owned),
         distribution: input.marginal.name(),
-        parameters: input.marginal.parameters().into_iter().map(parameter).collect(),
+        parameters: all
+            .iter()
+            .copied()
+            .filter(|(name, _)| !["value", "weight"].contains(name))
+            .map(parameter)
+            .collect(),
+        levels,
         lower,
         upper,
         trained: surrogate.trained_interval(j).map(|[lower, upper]| TrainedReport { lower, upper }),
@@ -399,8 +421,16 @@ impl InspectReport {
 }
 
 impl InputReport {
-    /// Like "mean 2e6, std 1e5".
+    /// Like "mean 2e6, std 1e5", or "1 in 25 %, 2 in 75 %".
     fn parameters_in_words(&self) -> String {
+        /// More levels are counted.
+        const LISTED: usize = 6;
+        let level = |level: &LevelReport| format!("{} in {}", shortest(level.value), share(level.proportion));
+        match self.levels.len() {
+            0 => {}
+            1..=LISTED => return self.levels.iter().map(level).collect::<Vec<_>>().join(", "),
+            more => return format!("{more} levels"),
+        }
         let one = |(name, value): (&String, &f64)| format!("{name} {}", shortest(*value));
         self.parameters.iter().map(one).collect::<Vec<_>>().join(", ")
     }

@@ -1,7 +1,7 @@
 //! Inputs of single levels and of measured values: shares against sums over them, files, and what is refused.
 
 use crate::laws::{built_from, folder_with, json, number, oscillator};
-use crate::support::command::{output, refusal};
+use crate::support::command::{output, pcc, refusal};
 use crate::support::in_one_line;
 use pcc_compile::study::Study;
 use std::fs;
@@ -120,8 +120,42 @@ fn files_and_printed_studies_keep_levels_and_measured_values() {
     let folder = built_from(&study);
     output(folder.path(), &["convert", "built.pcc", "there.json"]);
     output(folder.path(), &["convert", "there.json", "back.pcc"]);
+    let levels = json(folder.path(), &["inspect", "built.pcc"])["inputs"][0]["levels"].clone();
+    let level = |value: f64, proportion: f64| serde_json::json!({ "value": value, "proportion": proportion });
+    assert_eq!(levels, serde_json::json!([level(0.5, 0.25), level(1.0, 0.5), level(1.5, 0.25)]));
+    let shown = in_one_line(&output(folder.path(), &["inspect", "built.pcc"]));
+    assert!(shown.contains("0.5 in 25") && shown.contains("1 in 50"), "{shown}");
     let bytes = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert_eq!(bytes("built.pcc"), bytes("back.pcc"));
+}
+
+/// Files of levels of any weights are read again, and smoothed values are either read again or refused.
+#[test]
+fn what_is_built_is_read_again() {
+    for law in [
+        "\"discrete\", values = [0.2, 0.5, 1.0], weights = [1.0, 2.0, 5.0]",
+        "\"discrete\", values = [1.0, 2.0, 3.0, 4.0], weights = [0.1, 0.2, 0.3, 0.4]",
+        "\"discrete\", values = [1.0, 2.0]",
+        "\"discrete\", values = [0.2, 1.0], weights = [1.0, 99.0]",
+        "\"gamma\", shape = 0.05, scale = 1.0",
+        "\"beta\", alpha = 0.05, beta = 0.05",
+        "\"gumbel\", location = 1e6, scale = 0.01",
+    ] {
+        let folder = built_from(&oscillator(&[("x", law)], 1.1, ""));
+        output(folder.path(), &["inspect", "built.pcc", "--check"]);
+    }
+    let outlier: String =
+        (0..50).map(|k| format!("{:?}\n", 1.0 + 0.01 * f64::from(k % 10))).collect::<String>() + "11.0\n";
+    let long: String = (1..100).map(|k| format!("{:?}\n", -(1.0 - f64::from(k) / 100.0).ln())).collect();
+    for rows in [outlier, long] {
+        let folder = folder_with(&oscillator(&[("x", "\"data\", file = \"m.csv\"")], 1.1, ""));
+        fs::write(folder.path().join("m.csv"), rows).unwrap();
+        let built = pcc(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
+        match built.status.success() {
+            true => drop(output(folder.path(), &["inspect", "built.pcc", "--check"])),
+            false => assert!(String::from_utf8_lossy(&built.stderr).contains("cannot be resolved")),
+        }
+    }
 }
 
 #[test]

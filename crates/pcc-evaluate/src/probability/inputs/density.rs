@@ -30,6 +30,11 @@ pub(super) trait Density: std::fmt::Debug + Send + Sync {
     /// A typical value inside the support, and how far others are from it: mean and standard deviation, roughly.
     fn typical(&self) -> [f64; 2];
 
+    /// Over what distance it can change, if that is less than how far typical values are from each other.
+    fn finest(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Where it is not smooth inside its support, in ascending order.
     fn kinks(&self) -> Vec<f64> {
         Vec::new()
@@ -46,9 +51,9 @@ const NODES: usize = 20;
 const MOST_PANELS: i32 = 4_000;
 
 /// A density e^−110 of the largest counts for nothing, even under polynomials of high degree; gaps between two heaps
-/// are no wider than so many panels.
+/// are no wider in s.
 const NEGLIGIBLE: f64 = 110.0;
-const GAP: u32 = 40;
+const GAP: f64 = 10.0;
 
 /// Shortest distance from an end: below, logarithms of distances lose their digits.
 const SHORTEST: f64 = 1e-290;
@@ -122,6 +127,8 @@ impl Line {
 pub(super) struct Integrated<'a> {
     density: &'a dyn Density,
     line: Line,
+    /// Width of panels in s.
+    panel: f64,
     /// The Gauss rule on \[−1, 1\].
     rule: (Vec<f64>, Vec<f64>),
     /// The largest logarithm of a density in s.
@@ -136,18 +143,21 @@ pub(super) struct Integrated<'a> {
 impl<'a> Integrated<'a> {
     /// Integrates a density; `None` if it has no finite moments or is no density.
     pub fn new(density: &'a dyn Density) -> Option<Self> {
-        let rough = Self::along(density, Line::new(density.support(), density.typical()))?;
+        let rough = Self::along(density, density.typical())?;
         let [mean, std] = rough.moments();
         let inside = density.support()[0] < mean && mean < density.support()[1];
-        (inside && std.is_normal()).then(|| Self::along(density, Line::new(density.support(), [mean, std])))?
+        (inside && std.is_normal()).then(|| Self::along(density, [mean, std]))?
     }
 
-    fn along(density: &'a dyn Density, line: Line) -> Option<Self> {
+    fn along(density: &'a dyn Density, typical: [f64; 2]) -> Option<Self> {
+        let line = Line::new(density.support(), typical);
+        let panel = PANEL.min(density.finest() / typical[1]);
         let legendre = Family::Legendre.recurrence(NODES);
         let rule = gauss(&legendre.diagonal, &legendre.off_diagonal[..NODES - 1]);
         let mut integrated = Self {
             density,
             line,
+            panel,
             rule,
             peak: f64::NEG_INFINITY,
             edges: Vec::new(),
@@ -177,18 +187,18 @@ impl<'a> Integrated<'a> {
 
     /// Panels as far as the density counts in either direction, with kinks at their ends.
     fn find_edges(&mut self) {
-        let mut edges = vec![0.0];
+        let (mut edges, panel) = (vec![0.0], self.panel);
         for direction in [-1.0, 1.0] {
-            let mut without = 0;
+            let mut without = 0.0;
             for k in 1..=MOST_PANELS {
-                let s = direction * PANEL * f64::from(k);
+                let s = direction * panel * f64::from(k);
                 let (place, slope) = self.line.at(s);
                 if !(place.from_lower > SHORTEST && place.to_upper > SHORTEST && slope < 1.0 / SHORTEST) {
                     break;
                 }
                 let value = self.log_density(s);
                 self.peak = self.peak.max(value);
-                without = if value < self.peak - NEGLIGIBLE { without + 1 } else { 0 };
+                without = if value < self.peak - NEGLIGIBLE { without + panel } else { 0.0 };
                 edges.push(s);
                 if without > GAP {
                     break;

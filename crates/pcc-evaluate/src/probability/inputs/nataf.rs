@@ -238,13 +238,9 @@ mod tests {
         // −e^(−σ²) to 1 for σ² = ln 2.
         let Err(PearsonError::Impossible { least, largest }) = scores_of_pearson(&law, &law, -0.6) else { panic!() };
         assert!((least + 0.5).abs() < 1e-12 && (largest - 1.0).abs() < 1e-12);
-        for wide in [
-            self::law("lognormal", &[("mean", 1.0), ("cv", 1e12)]),
-            self::law("weibull", &[("shape", 1e-3), ("scale", 1.0)]),
-        ] {
-            assert_eq!(scores_of_pearson(&law, &wide, 0.1), Err(PearsonError::TooWide));
-            assert!(pearson_of_scores(&wide, &law, 0.1).is_nan());
-        }
+        let wide = self::law("lognormal", &[("mean", 1.0), ("cv", 1e12)]);
+        assert_eq!(scores_of_pearson(&law, &wide, 0.1), Err(PearsonError::TooWide));
+        assert!(pearson_of_scores(&wide, &law, 0.1).is_nan());
         assert!(scores_of_pearson(&law, &law, -0.4999).unwrap() > -1.0);
         assert!(scores_of_pearson(&law, &law, f64::NAN).is_err());
     }

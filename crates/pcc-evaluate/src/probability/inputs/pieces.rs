@@ -1,6 +1,7 @@
 //! A rising function of a standard normal variable in pieces, each a polynomial: how the quantiles of a law are kept in
 //! files, so that nobody who reads them needs the law's special functions.
 
+use super::normal_quantile::distribution;
 use super::root;
 
 /// Degree of every piece.
@@ -114,6 +115,17 @@ impl Pieces {
         self.pieces.iter().all(|piece| piece.coefficients[1..] == [0.0; DEGREE])
     }
 
+    /// Values with their weights: of steps exactly, else along normal scores.
+    pub fn rule(&self) -> (Vec<f64>, Vec<f64>) {
+        if self.are_steps() {
+            let ends = self.breaks();
+            let weights = ends.windows(2).map(|ends| distribution(ends[1]) - distribution(ends[0]));
+            return (self.pieces.iter().map(|piece| piece.coefficients[0]).collect(), weights.collect());
+        }
+        let scores = (-272..=272).map(|k| f64::from(k) / 32.0);
+        scores.map(|z| (self.at(z), (-0.5 * z * z).exp())).unzip()
+    }
+
     /// The normal scores at which the first of the steps in an interval of values begins, and the last one ends.
     pub fn scores_of_levels(&self, [lower, upper]: [f64; 2]) -> [f64; 2] {
         /// Of a standard deviation: levels that are typed are not always the same to the last digit.
@@ -178,16 +190,16 @@ impl Pieces {
     }
 
     /// Whether values at places inside all pieces are finite and never fall.
-    fn is_rising(&self) -> bool {
+    pub fn is_rising(&self) -> bool {
         const PLACES: u32 = 8;
-        /// Rounding of neighbouring pieces.
-        const ROUNDING: f64 = 1e-10;
+        /// Of a standard deviation, or of a value that is many: rounding of neighbouring pieces.
+        const ROUNDING: f64 = 1e-6;
         let mut last = f64::NEG_INFINITY;
         self.pieces.iter().all(|piece| {
             (0..=PLACES).all(|k| {
                 let t = f64::from(2 * k) / f64::from(PLACES) - 1.0;
                 let value = piece.value(piece.center + t / piece.inverse_half_width);
-                let is_rising = value.is_finite() && value >= last - ROUNDING * value.abs().max(last.abs());
+                let is_rising = value.is_finite() && value >= last - ROUNDING * value.abs().max(last.abs()).max(1.0);
                 last = value;
                 is_rising
             })

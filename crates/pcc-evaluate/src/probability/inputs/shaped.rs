@@ -87,13 +87,18 @@ impl Draft {
         };
         let origin = support.into_iter().find(|end| end.is_finite()).unwrap_or(mean);
         let quantile = Pieces::of(|z| standard(integrated.at_score(z)), &integrated.scores_of_kinks());
-        if !is_resolved(&integrated, [origin, scale], &quantile) {
-            return Err(unresolved());
-        }
         let (places, weights) = integrated.rule();
         let nodes = places.into_iter().map(standard).collect();
         let polynomials = OwnPolynomials::of_density(self.family, nodes, weights);
         let basis = chosen.unwrap_or(self.default);
+        // What readers of files will look at, too.
+        let is_readable = quantile.is_rising()
+            // Of measured values files have no density.
+            && (self.name == "data" || is_quantile_of(&*self.density, [origin, scale], &quantile))
+            && (basis == Polynomials::Hermite || are_polynomials_of(&polynomials, &quantile));
+        if !(is_readable && is_resolved(&integrated, [origin, scale], &quantile)) {
+            return Err(unresolved());
+        }
         Ok(Shaped {
             chosen,
             ..Shaped::new(self.name, self.parameters, support, [origin, scale], quantile, basis, polynomials)
@@ -189,7 +194,7 @@ fn is_quantile_of(density: &dyn Density, [origin, scale]: [f64; 2], quantile: &P
         (!is_near).then(|| density.log_density(place) + quantile.slope(z).ln() + 0.5 * z * z)
     };
     let levels: Vec<f64> = (-12..=12).filter_map(|k| level(f64::from(k) / 4.0)).collect();
-    levels.len() > 2 && levels.iter().all(|value| (value - levels[0]).abs() <= TOLERANCE)
+    levels.iter().all(|value| (value - levels[0]).abs() <= TOLERANCE)
 }
 
 /// Whether the first coefficients are those of the variable q(z), and the others can be.
@@ -197,10 +202,11 @@ pub(super) fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> boo
     /// By the trapezoidal rule, which kinks make worse and which ends where the pieces do.
     const TOLERANCE: f64 = 1e-2;
     const CHECKED: usize = 3;
-    let steps = (-272..=272).map(|k| f64::from(k) / 32.0);
-    let (nodes, weights) = steps.map(|z| (quantile.at(z), (-0.5 * z * z).exp())).unzip();
-    let expected = OwnPolynomials::of_density("own", nodes, weights).recurrence(CHECKED);
-    let Recurrence { diagonal, off_diagonal } = own.recurrence(own.stored_degree().unwrap_or(CHECKED));
+    let (nodes, weights) = quantile.rule();
+    // Of so many values there are no more polynomials.
+    let checked = CHECKED.min(nodes.len() - 1);
+    let expected = OwnPolynomials::of_density("own", nodes, weights).recurrence(checked);
+    let Recurrence { diagonal, off_diagonal } = own.recurrence(own.stored_degree().unwrap_or(checked));
     let close = |found: &[f64], expected: &[f64]| {
         found.iter().zip(expected).all(|(a, b)| (a - b).abs() <= TOLERANCE * b.abs().max(1.0))
     };

@@ -103,7 +103,10 @@ pub enum MarginalError {
         law: &'static str,
     },
     /// A law's quantiles cannot be computed to all digits.
-    #[error("a {law} law with these parameters cannot be resolved in double precision; move them away from extremes")]
+    #[error(
+        "a {law} law with these parameters or values cannot be resolved in double precision; move them away from \
+         extremes, or leave out values far from all others"
+    )]
     Shape {
         /// Its name.
         law: &'static str,
