@@ -139,11 +139,12 @@ fn what_is_built_is_read_again() {
         "\"discrete\", values = [0.2, 1.0], weights = [1.0, 99.0]",
         "\"gamma\", shape = 0.05, scale = 1.0",
         "\"beta\", alpha = 0.05, beta = 0.05",
-        "\"gumbel\", location = 1e6, scale = 0.01",
     ] {
         let folder = built_from(&oscillator(&[("x", law)], 1.1, ""));
         output(folder.path(), &["inspect", "built.pcc", "--check"]);
     }
+    let narrow = folder_with(&oscillator(&[("x", "\"gumbel\", location = 1e6, scale = 0.01")], 1.1, ""));
+    assert!(in_one_line(&refusal(narrow.path(), &["build", "study.toml"])).contains("cannot be resolved"));
     let outlier: String =
         (0..50).map(|k| format!("{:?}\n", 1.0 + 0.01 * f64::from(k % 10))).collect::<String>() + "11.0\n";
     let long: String = (1..100).map(|k| format!("{:?}\n", -(1.0 - f64::from(k) / 100.0).ln())).collect();
