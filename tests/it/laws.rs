@@ -115,6 +115,42 @@ fn critical_values_have_the_law_of_what_is_left() {
     assert_eq!(number(&report, "/critical/never"), 0.0);
 }
 
+/// The critical value of x is y, which is uniform: its mean, quartiles and largest value, also where those are in the
+/// tail of x; of x without bounds as far as it is looked for, of which the last value is the quantile 99.988 %.
+#[test]
+fn critical_values_are_those_of_the_other_input_whatever_the_law() {
+    for (law, [from, to], last) in [
+        ("\"exponential\", mean = 1.0", [0.5, 5.0], f64::INFINITY),
+        ("\"log-uniform\", lower = 1e-3, upper = 1e3", [0.5, 5.0], f64::INFINITY),
+        ("\"beta\", alpha = 2.0, beta = 4.0", [0.1, 0.95], f64::INFINITY),
+        ("\"normal\", mean = 0.0, std = 1.0, lower = -3.0, upper = 7.0", [2.0, 6.0], f64::INFINITY),
+        ("\"normal\", mean = 0.0, std = 1.0", [2.0, 6.0], 3.668_329_2),
+        ("\"discrete\", values = [1.0, 2.0, 3.0]", [1.0, 1.999], f64::INFINITY),
+    ] {
+        let inputs = [("x", law), ("y", &*format!("\"uniform\", lower = {from:?}, upper = {to:?}"))];
+        let study = oscillator(&inputs, 0.0, "").replace("2 * (0.0 - x - y)", "2 * (y - x)");
+        let folder = built_from(&study);
+        let report = json(folder.path(), &["eval", "built.pcc", "-n", "100000", "--critical", "x"]);
+        let is_discrete = law.contains("discrete");
+        // Levels are all there is: above 1 and below 2 stability is lost at 2.
+        let expected = |share: f64| if is_discrete { 2.0 } else { from + share * (to - from) };
+        let lost = ((last.min(to) - from) / (to - from)).min(1.0);
+        let tolerance = 0.004 * (to - from);
+        let mean = number(&report, "/critical/mean");
+        assert!((mean - expected(0.5 * lost)).abs() < tolerance, "{law}: mean {mean} for {}", expected(0.5 * lost));
+        for (at, level) in [(2, 0.25), (4, 0.75)] {
+            let found = &report["critical"]["quantiles"][at];
+            assert_eq!(found["level"], level);
+            match found["value"].as_f64() {
+                Some(value) => assert!((value - expected(level)).abs() < tolerance, "{law}: {level} at {value}"),
+                None => assert!(level > lost, "{law}: {level} is not known"),
+            }
+        }
+        let never = number(&report, "/critical/never");
+        assert!((never - (1.0 - lost)).abs() < 0.005, "{law}: {never} never");
+    }
+}
+
 /// Shares of the variance of x + y are those of the variances.
 #[test]
 fn sensitivities_to_normal_inputs_are_shares_of_the_variance() {

@@ -4,7 +4,8 @@
 //! which it is unstable, max Re λ > 0. Its distribution says where a limit for this input has to lie so that, say, 99 %
 //! of all systems stay stable below it.
 //!
-//! The domain is the interval of an input with bounds; of others what lies between two quantiles far out.
+//! The domain is the interval of an input with bounds; of others what lies between two quantiles far out. Its width is
+//! measured in the input where that is uniform, else in normal scores, so that what happens in a tail is told apart.
 //!
 //! 1. max Re λ at the 65 ends of 64 equal cells of the input's domain, from below, until one is unstable. If it is the
 //!    first, the critical value is the smallest that is looked at; if there is none, there is no critical value.
@@ -57,8 +58,8 @@ pub struct CriticalValues {
     domain: Marginal,
     /// Critical values above the smallest, per bin.
     counts: Vec<u64>,
-    /// All critical values, as shares of what is looked at, from the smallest value upwards.
-    shares: Moments,
+    /// All critical values, in the input's own unit.
+    values: Moments,
     /// Every change of stability along the input.
     crossings: Crossings,
     labels: Vec<Label>,
@@ -72,7 +73,7 @@ impl CriticalValues {
             unstable_from_start: 0,
             domain,
             counts: vec![0; BINS],
-            shares: Moments::default(),
+            values: Moments::default(),
             crossings: Crossings::default(),
             labels,
         }
@@ -91,9 +92,9 @@ impl CriticalValues {
         let rank = level * self.samples as f64;
         let below = self.unstable_from_start as f64;
         if self.unstable_from_start > 0 && rank <= below {
-            return Some(self.physical(0.0));
+            return Some(self.domain.along(-1.0));
         }
-        quantile_in_bins(&self.counts, rank - below, &self.shares).map(|share| self.physical(share))
+        quantile_in_bins(&self.counts, rank - below, &self.values, &self.domain)
     }
 
     /// Mean critical value of the samples that lose stability, in the input's own unit; `None` if there are none.
@@ -112,48 +113,36 @@ impl CriticalValues {
     }
 
     fn of_lost(&self, part: fn(&Moments) -> f64) -> Option<f64> {
-        (self.shares.count() > 0).then(|| self.physical(part(&self.shares)))
-    }
-
-    fn physical(&self, share: f64) -> f64 {
-        physical(&self.domain, share)
+        (self.values.count() > 0).then(|| part(&self.values))
     }
 
     fn add(&mut self, part: &Part) {
         self.never += part.never;
         self.unstable_from_start += part.unstable_from_start;
-        for &share in &part.crossings {
-            self.counts[bin_of(share)] += 1;
+        for &place in &part.crossings {
+            self.counts[bin_of(place)] += 1;
         }
-        self.shares.merge(&Moments::of(&vec![0.0; part.unstable_from_start as usize]));
-        self.shares.merge(&Moments::of(&part.crossings));
-        self.crossings.add(&part.changes);
+        let values: Vec<f64> = part.crossings.iter().map(|&place| self.domain.along(place)).collect();
+        self.values.merge(&Moments::of(&vec![self.domain.along(-1.0); part.unstable_from_start as usize]));
+        self.values.merge(&Moments::of(&values));
+        self.crossings.add(&part.changes, &self.domain);
     }
 }
 
-/// The value of an input at this share of its domain: of its interval, or of what is probable where it is not uniform.
-pub(super) fn physical(domain: &Marginal, share: f64) -> f64 {
-    let [lower, upper] = domain.support();
-    match domain {
-        Marginal::Uniform(_) => (lower + share * (upper - lower)).clamp(lower, upper),
-        _ => domain.at_centred_probability(domain.germ().reach() * (2.0 * share - 1.0)),
-    }
+/// The bin of a place of the domain, from −1 to 1.
+pub(super) fn bin_of(place: f64) -> usize {
+    ((0.5 * (1.0 + place) * BINS as f64) as usize).min(BINS - 1)
 }
 
-/// The bin of a share of the domain's width.
-pub(super) fn bin_of(share: f64) -> usize {
-    ((share * BINS as f64) as usize).min(BINS - 1)
-}
-
-/// The share of the domain's width that as many values as `rank` do not exceed, interpolated linearly inside its bin;
-/// `None` if there are fewer.
-pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, shares: &Moments) -> Option<f64> {
+/// The value that as many values as `rank` do not exceed, interpolated linearly inside its bin; `None` if there are
+/// fewer.
+pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, values: &Moments, domain: &Marginal) -> Option<f64> {
     let mut below = 0.0;
     for (bin, &count) in counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
         let count = count as f64;
         if rank <= below + count {
             let share = (bin as f64 + (rank - below) / count) / BINS as f64;
-            return Some(share.max(shares.minimum()).min(shares.maximum()));
+            return Some(domain.along(2.0 * share - 1.0).max(values.minimum()).min(values.maximum()));
         }
         below += count;
     }
@@ -230,9 +219,9 @@ pub fn critical_values_in(
 struct Part {
     never: u64,
     unstable_from_start: u64,
-    /// Critical values above the smallest value that is looked at, as shares of the domain's width.
+    /// Critical values above the smallest value that is looked at, as places of the domain from −1 to 1.
     crossings: Vec<f64>,
-    /// Every change of stability, as a share of the domain's width.
+    /// Every change of stability, as a place of the domain.
     changes: Vec<(CrossingKey, f64)>,
 }
 
@@ -280,9 +269,9 @@ impl Changing {
         if self.loses { coordinate } else { -coordinate }
     }
 
-    /// The unstable end, as a share of the domain's width.
-    fn share(&self) -> f64 {
-        0.5 * (1.0 + self.xi(self.bracket.unstable.xi))
+    /// The unstable end, as a place of the domain.
+    fn place(&self) -> f64 {
+        self.xi(self.bracket.unstable.xi)
     }
 
     fn key(&self) -> CrossingKey {
@@ -320,9 +309,9 @@ impl Search<'_> {
         self.refine(&mut changing, observer)?;
         // The first loss of those that were stable at the start.
         let first_losses = changing.iter().filter(|changing| changing.order == 1 && starts_stable[changing.sample]);
-        let crossings: Vec<f64> = first_losses.map(Changing::share).collect();
+        let crossings: Vec<f64> = first_losses.map(Changing::place).collect();
         let never = samples as u64 - unstable_from_start - crossings.len() as u64;
-        let changes = changing.iter().map(|changing| (changing.key(), changing.share())).collect();
+        let changes = changing.iter().map(|changing| (changing.key(), changing.place())).collect();
         Ok(Part { never, unstable_from_start, crossings, changes })
     }
 
@@ -374,7 +363,7 @@ impl Search<'_> {
         let germ = self.surrogate.inputs.inputs()[input].marginal.germ();
         let set_point = |(sample, xi): (usize, f64), point: &mut [f64]| {
             point.copy_from_slice(&points[sample * point.len()..(sample + 1) * point.len()]);
-            point[input] = germ.at(germ.reach() * xi);
+            point[input] = germ.along(xi);
         };
         let mut found = Vec::with_capacity(trials.len());
         self.evaluator.deciding(trials.len(), |number, point| set_point(trials[number], point), &mut found);

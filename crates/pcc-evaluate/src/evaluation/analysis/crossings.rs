@@ -3,7 +3,7 @@
 //! A window of stability has two: of a bicycle that speeds up, the first is where weave, a mode that flutters, dies
 //! down, the second where capsize, a real eigenvalue, begins to grow.
 
-use super::critical::{BINS, bin_of, physical, quantile_in_bins};
+use super::critical::{BINS, bin_of, quantile_in_bins};
 use crate::components::{Label, Verdict};
 use crate::probability::inputs::Marginal;
 use crate::probability::statistics::Moments;
@@ -31,11 +31,11 @@ pub struct Crossings {
     found: BTreeMap<CrossingKey, Values>,
 }
 
-/// Values at which samples cross, as shares of the domain's width.
+/// Values at which samples cross: counts per bin of places, and moments in the input's own unit.
 #[derive(Debug, Clone, PartialEq)]
 struct Values {
     counts: Vec<u64>,
-    shares: Moments,
+    values: Moments,
 }
 
 /// Crossings of the same order, kind and mode.
@@ -60,7 +60,7 @@ pub struct Crossing {
 }
 
 impl Crossings {
-    pub(super) fn add(&mut self, crossings: &[(CrossingKey, f64)]) {
+    pub(super) fn add(&mut self, crossings: &[(CrossingKey, f64)], domain: &Marginal) {
         let mut sorted: Vec<&(CrossingKey, f64)> =
             crossings.iter().filter(|(key, _)| key.order <= MOST_CROSSINGS).collect();
         sorted.sort_by_key(|(key, _)| *key);
@@ -68,12 +68,12 @@ impl Crossings {
             let values = self
                 .found
                 .entry(same[0].0)
-                .or_insert_with(|| Values { counts: vec![0; BINS], shares: Moments::default() });
-            let shares: Vec<f64> = same.iter().map(|(_, share)| *share).collect();
-            for share in &shares {
-                values.counts[bin_of(*share)] += 1;
+                .or_insert_with(|| Values { counts: vec![0; BINS], values: Moments::default() });
+            for (_, place) in same {
+                values.counts[bin_of(*place)] += 1;
             }
-            values.shares.merge(&Moments::of(&shares));
+            let physical: Vec<f64> = same.iter().map(|(_, place)| domain.along(*place)).collect();
+            values.values.merge(&Moments::of(&physical));
         }
     }
 
@@ -88,9 +88,9 @@ impl Crossings {
                 label => label,
             },
             verdict: if key.is_real { Verdict::Divergence } else { Verdict::Flutter },
-            samples: values.shares.count(),
-            mean: physical(domain, values.shares.mean()),
-            range: [values.shares.minimum(), values.shares.maximum()].map(|share| physical(domain, share)),
+            samples: values.values.count(),
+            mean: values.values.mean(),
+            range: [values.values.minimum(), values.values.maximum()],
             values: values.clone(),
             domain: domain.clone(),
         };
@@ -104,7 +104,7 @@ impl Crossing {
     /// The value that a share `level` of these crossings does not exceed, in the input's own unit, to 10⁻⁴ of the
     /// domain's width.
     pub fn quantile(&self, level: f64) -> f64 {
-        let share = quantile_in_bins(&self.values.counts, level * self.samples as f64, &self.values.shares);
-        share.map_or(self.range[1], |share| physical(&self.domain, share))
+        let Values { counts, values } = &self.values;
+        quantile_in_bins(counts, level * self.samples as f64, values, &self.domain).unwrap_or(self.range[1])
     }
 }

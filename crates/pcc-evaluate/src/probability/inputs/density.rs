@@ -35,6 +35,11 @@ pub(super) trait Density: std::fmt::Debug + Send + Sync {
         f64::INFINITY
     }
 
+    /// Between which values no gap ends it, however wide.
+    fn reach(&self) -> [f64; 2] {
+        [self.typical()[0]; 2]
+    }
+
     /// Where it is not smooth inside its support, in ascending order.
     fn kinks(&self) -> Vec<f64> {
         Vec::new()
@@ -48,7 +53,7 @@ const PANEL: f64 = 0.25;
 const NODES: usize = 20;
 
 /// Panels in either direction, at most.
-const MOST_PANELS: i32 = 4_000;
+const MOST_PANELS: i32 = 1 << 17;
 
 /// A density e^−110 of the largest counts for nothing, even under polynomials of high degree; gaps between two heaps
 /// are no wider in s.
@@ -165,6 +170,10 @@ impl<'a> Integrated<'a> {
             above: Vec::new(),
         };
         integrated.find_edges();
+        let [from, to] = density.reach().map(|x| line.of(x));
+        if !(integrated.edges.first() <= Some(&from) && Some(&to) <= integrated.edges.last()) {
+            return None;
+        }
         let masses: Vec<f64> = integrated.edges.windows(2).map(|ends| integrated.mass(ends[0], ends[1])).collect();
         let sum: f64 = masses.iter().sum();
         let summed = |masses: &mut dyn Iterator<Item = &f64>| -> Vec<f64> {
@@ -188,7 +197,8 @@ impl<'a> Integrated<'a> {
     /// Panels as far as the density counts in either direction, with kinks at their ends.
     fn find_edges(&mut self) {
         let (mut edges, panel) = (vec![0.0], self.panel);
-        for direction in [-1.0, 1.0] {
+        let reach = self.density.reach().map(|x| self.line.of(x));
+        for (direction, end) in [-1.0, 1.0].into_iter().zip(reach) {
             let mut without = 0.0;
             for k in 1..=MOST_PANELS {
                 let s = direction * panel * f64::from(k);
@@ -200,7 +210,7 @@ impl<'a> Integrated<'a> {
                 self.peak = self.peak.max(value);
                 without = if value < self.peak - NEGLIGIBLE { without + panel } else { 0.0 };
                 edges.push(s);
-                if without > GAP {
+                if without > GAP && direction * s > direction * end {
                     break;
                 }
             }

@@ -3,6 +3,7 @@
 use super::normal_quantile::{at_centred, distribution, normal_at};
 use super::normal_tail::tails;
 use super::own_variable::OwnVariable;
+use super::pieces;
 use crate::polynomials::Family;
 use std::sync::Arc;
 
@@ -17,7 +18,7 @@ pub enum Germ {
     Own(Arc<OwnVariable>),
 }
 
-/// The largest |2F − 1| at which a search along an unbounded input looks: 3.7 standard deviations of a normal one.
+/// The largest |2F − 1| at which a search along an unbounded input looks: a normal score of 3.7.
 const REACH: f64 = 1.0 - 1.0 / 4096.0;
 
 /// The largest |2F − 1| of random values.
@@ -114,6 +115,19 @@ impl Germ {
             Self::Uniform => 1.0,
             Self::Own(own) if own.is_bounded == [true; 2] => 1.0,
             Self::Normal | Self::Own(_) => REACH,
+        }
+    }
+
+    /// ξ at a place of the range in which values of an input are looked for, from −1 to 1. Equal steps are steps of ξ
+    /// where it is uniform, else of the normal score, so that tails have places, too.
+    #[inline(always)]
+    pub fn along(&self, place: f64) -> f64 {
+        match self {
+            Self::Uniform => place,
+            Self::Normal | Self::Own(_) => {
+                let farthest = if self.reach() < 1.0 { normal_at(REACH) } else { pieces::REACH };
+                self.at_score(farthest * place)
+            }
         }
     }
 }

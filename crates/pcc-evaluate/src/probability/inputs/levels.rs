@@ -130,13 +130,17 @@ impl Levels {
 /// Normal scores at which one level gives way to the next: of the probability of all before, in the digits of the
 /// nearer tail.
 fn scores_between(probabilities: &[f64]) -> Vec<f64> {
-    let inner = 1..probabilities.len();
-    let score = |k: usize| {
-        let (below, above): (f64, f64) = (probabilities[..k].iter().sum(), probabilities[k..].iter().sum());
-        let score = if below < above { quantile(below) } else { upper_quantile(above) };
+    let mut above: Vec<f64> = probabilities.to_vec();
+    for k in (1..above.len()).rev() {
+        above[k - 1] += above[k];
+    }
+    let mut below = 0.0;
+    let score = |(probability, above): (&f64, &f64)| {
+        below += probability;
+        let score = if below < *above { quantile(below) } else { upper_quantile(*above) };
         score.clamp(-REACH, REACH)
     };
-    inner.map(score).collect()
+    probabilities.iter().zip(&above[1..]).map(score).collect()
 }
 
 /// The law of levels with their weights.

@@ -186,6 +186,15 @@ impl Marginal {
         self.physical(self.germ().at(centred))
     }
 
+    /// The physical value at a place of the range in which values are looked for ([`Germ::along`]).
+    pub fn along(&self, place: f64) -> f64 {
+        let [lower, upper] = self.support();
+        match self {
+            Self::Uniform(_) => (lower + 0.5 * (1.0 + place) * (upper - lower)).clamp(lower, upper),
+            Self::Other(_) => self.physical(self.germ().along(place)),
+        }
+    }
+
     /// The interval that has all probability; infinite where it has no bound.
     pub fn support(&self) -> [f64; 2] {
         self.law().support()

@@ -178,6 +178,10 @@ impl Density for Kernels {
     fn finest(&self) -> f64 {
         self.width
     }
+
+    fn reach(&self) -> [f64; 2] {
+        [self.centers[0], self.centers[self.centers.len() - 1]]
+    }
 }
 
 #[cfg(test)]
@@ -185,7 +189,7 @@ mod tests {
     use super::*;
 
     fn sample(count: u32) -> Vec<f64> {
-        (0..count).map(|k| 3.0 + 0.2 * (f64::from(k) * 0.754_877_666).fract()).collect()
+        (0..count).map(|k| 3.0 + ((f64::from(k) * 0.754_877_666).fract() - 0.3).powi(3)).collect()
     }
 
     /// By the midpoint rule in probability.
@@ -206,34 +210,44 @@ mod tests {
         }
     }
 
-    /// F of a sum of normal laws in closed form.
+    /// F of a sum of normal laws in closed form, also where heaps of values lie far apart.
     #[test]
     fn the_distribution_is_the_mean_of_those_of_the_kernels() {
         use super::super::normal_quantile::distribution;
-        let values = sample(12);
-        let law = Marginal::measured(&values, [None, None], Smoothing::Kernel, None).unwrap();
-        let [mean, std] = moments(&values);
-        let mut sorted = values.clone();
-        sorted.sort_by(f64::total_cmp);
-        let bandwidth = bandwidth(&sorted, std);
-        let shrink = 1.0 / (bandwidth / std).hypot(1.0);
-        for k in 1..60 {
-            let centred = f64::from(k) / 30.0 - 1.0;
-            let x = law.at_centred_probability(centred);
-            let below = |value: &f64| distribution((x - mean - (value - mean) * shrink) / (bandwidth * shrink));
-            let expected = values.iter().map(below).sum::<f64>() / 12.0;
-            // Values closer than a tenth of a kernel are taken together.
-            assert!((0.5 * (1.0 + centred) - expected).abs() < 2e-3, "{x}: {expected}");
+        let near = |center: f64, count: u32| -> Vec<f64> {
+            (0..count).map(|k| center + 0.02 * ((f64::from(k) * 0.754_877_666).fract() - 0.5)).collect()
+        };
+        for values in [
+            sample(12),
+            [near(1.0, 50), vec![11.0]].concat(),
+            [near(1.0, 50), near(2.0, 50)].concat(),
+            [near(1.0, 2000), vec![-40.0, 60.0]].concat(),
+            (1..100).map(|k| -(1.0 - f64::from(k) / 100.0).ln()).collect(),
+        ] {
+            let law = Marginal::measured(&values, [None, None], Smoothing::Kernel, None).unwrap();
+            let [mean, std] = moments(&values);
+            let mut sorted = values.clone();
+            sorted.sort_by(f64::total_cmp);
+            let bandwidth = bandwidth(&sorted, std);
+            let shrink = 1.0 / (bandwidth / std).hypot(1.0);
+            for k in 1..60 {
+                let centred = f64::from(k) / 30.0 - 1.0;
+                let x = law.at_centred_probability(centred);
+                let below = |value: &f64| distribution((x - mean - (value - mean) * shrink) / (bandwidth * shrink));
+                let expected = values.iter().map(below).sum::<f64>() / values.len() as f64;
+                // Values closer than a tenth of a kernel are taken together.
+                assert!((0.5 * (1.0 + centred) - expected).abs() < 2e-3, "{} values at {x}: {expected}", values.len());
+            }
         }
     }
 
     #[test]
     fn bounds_cut_off_and_hold_all_values() {
         let values = sample(40);
-        let law = Marginal::measured(&values, [Some(2.95), None], Smoothing::Kernel, None).unwrap();
-        assert_eq!(law.support(), [2.95, f64::INFINITY]);
-        assert!(law.at_centred_probability(-0.999_999) >= 2.95);
-        let cut = Marginal::measured(&values, [Some(3.05), None], Smoothing::Kernel, None);
+        let law = Marginal::measured(&values, [Some(2.97), None], Smoothing::Kernel, None).unwrap();
+        assert_eq!(law.support(), [2.97, f64::INFINITY]);
+        assert!(law.at_centred_probability(-0.999_999) >= 2.97);
+        let cut = Marginal::measured(&values, [Some(3.0), None], Smoothing::Kernel, None);
         assert!(matches!(cut, Err(MarginalError::BeyondBounds { .. })));
     }
 

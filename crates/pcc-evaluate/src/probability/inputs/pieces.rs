@@ -3,6 +3,7 @@
 
 use super::normal_quantile::distribution;
 use super::root;
+use crate::polynomials::{Family, gauss};
 
 /// Degree of every piece.
 pub(crate) const DEGREE: usize = 12;
@@ -32,6 +33,13 @@ struct Piece {
 impl Piece {
     fn new([from, to]: [f64; 2], coefficients: [f64; DEGREE + 1]) -> Self {
         Self { end: to, center: 0.5 * (from + to), inverse_half_width: 2.0 / (to - from), coefficients }
+    }
+
+    /// The straight line between two values.
+    fn line(ends: [f64; 2], [from, to]: [f64; 2]) -> Self {
+        let mut coefficients = [0.0; DEGREE + 1];
+        (coefficients[0], coefficients[1]) = (0.5 * (from + to), 0.5 * (to - from));
+        Self::new(ends, coefficients)
     }
 
     #[inline(always)]
@@ -115,15 +123,21 @@ impl Pieces {
         self.pieces.iter().all(|piece| piece.coefficients[1..] == [0.0; DEGREE])
     }
 
-    /// Values with their weights: of steps exactly, else along normal scores.
+    /// Values with their weights: of steps exactly, else by a Gauss rule on each piece.
     pub fn rule(&self) -> (Vec<f64>, Vec<f64>) {
         if self.are_steps() {
             let ends = self.breaks();
             let weights = ends.windows(2).map(|ends| distribution(ends[1]) - distribution(ends[0]));
             return (self.pieces.iter().map(|piece| piece.coefficients[0]).collect(), weights.collect());
         }
-        let scores = (-272..=272).map(|k| f64::from(k) / 32.0);
-        scores.map(|z| (self.at(z), (-0.5 * z * z).exp())).unzip()
+        let legendre = Family::Legendre.recurrence(DEGREE);
+        let (places, shares) = gauss(&legendre.diagonal, &legendre.off_diagonal[..DEGREE - 1]);
+        let of_piece = |piece: &Piece| -> Vec<(f64, f64)> {
+            let half = 1.0 / piece.inverse_half_width;
+            let scores = places.iter().map(|place| half.mul_add(*place, piece.center));
+            scores.zip(&shares).map(|(z, share)| (piece.value(z), share * half * (-0.5 * z * z).exp())).collect()
+        };
+        self.pieces.iter().flat_map(of_piece).unzip()
     }
 
     /// The normal scores at which the first of the steps in an interval of values begins, and the last one ends.
@@ -193,7 +207,7 @@ impl Pieces {
     pub fn is_rising(&self) -> bool {
         const PLACES: u32 = 8;
         /// Of a standard deviation, or of a value that is many: rounding of neighbouring pieces.
-        const ROUNDING: f64 = 1e-6;
+        const ROUNDING: f64 = 1e-9;
         let mut last = f64::NEG_INFINITY;
         self.pieces.iter().all(|piece| {
             (0..=PLACES).all(|k| {
@@ -212,22 +226,30 @@ fn edge(cell: usize) -> f64 {
     (cell as f64).mul_add(2.0 * REACH / CELLS as f64, -REACH)
 }
 
-/// One piece between `ends`, or halves of it as long as that is not exact enough and they are worth it.
+/// One piece between `ends`, or halves of it as long as that is not exact enough. Where a density nearly vanishes its
+/// quantiles jump: a straight line is left of that, over next to no probability.
 fn divide(function: &impl Fn(f64) -> f64, ends: [f64; 2], pieces: &mut Vec<Piece>) {
-    const NARROWEST: f64 = 2.0 * REACH / CELLS as f64;
+    /// Below the width of a cell errors are accepted of a function that is not known better.
+    const CELL: f64 = 2.0 * REACH / CELLS as f64;
+    const LOOSE: f64 = 1e-10;
+    const NARROWEST: f64 = CELL / (1_u64 << 34) as f64;
     const TESTS: usize = 9;
     let piece = fitted(function, ends);
     let width = ends[1] - ends[0];
     let tests = (0..TESTS).map(|k| ends[0] + width * (k as f64 + 0.5) / TESTS as f64);
-    let largest = ends.map(|z| function(z).abs()).into_iter().fold(0.0, f64::max);
-    let is_exact = |z: f64| (piece.value(z) - function(z)).abs() <= TOLERANCE * largest.max(NOTHING / TOLERANCE);
-    if width <= NARROWEST || tests.into_iter().all(is_exact) {
+    let values = ends.map(function);
+    let largest = values.into_iter().map(f64::abs).fold(0.0, f64::max);
+    let error = if width > CELL { TOLERANCE * largest } else { LOOSE * largest.max(1.0) };
+    let is_exact = |z: f64| (piece.value(z) - function(z)).abs() <= error.max(NOTHING);
+    if tests.into_iter().all(is_exact) {
         pieces.push(piece);
-        return;
+    } else if width <= NARROWEST {
+        pieces.push(Piece::line(ends, values));
+    } else {
+        let middle = 0.5 * (ends[0] + ends[1]);
+        divide(function, [ends[0], middle], pieces);
+        divide(function, [middle, ends[1]], pieces);
     }
-    let middle = 0.5 * (ends[0] + ends[1]);
-    divide(function, [ends[0], middle], pieces);
-    divide(function, [middle, ends[1]], pieces);
 }
 
 /// The polynomial through the values at Chebyshev's nodes.

@@ -199,8 +199,8 @@ fn is_quantile_of(density: &dyn Density, [origin, scale]: [f64; 2], quantile: &P
 
 /// Whether the first coefficients are those of the variable q(z), and the others can be.
 pub(super) fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
-    /// By the trapezoidal rule, which kinks make worse and which ends where the pieces do.
-    const TOLERANCE: f64 = 1e-2;
+    /// Of values in narrow heaps far apart coefficients follow from small differences.
+    const TOLERANCE: f64 = 1e-4;
     const CHECKED: usize = 3;
     let (nodes, weights) = quantile.rule();
     // Of so many values there are no more polynomials.
