@@ -1,8 +1,8 @@
 //! Points for runs near the stability boundary.
 //!
 //! The *zone* are the points of smallest |excess| among those at which shares are judged, with twice the probability of
-//! the rarer side, and at least twenty candidates per wanted run. Of these the one farthest from all runs and all that
-//! are chosen already is taken, again and again: the boundary is covered where no run is. The distance is that of
+//! the rarer side, and at least twenty candidates per wanted run, also on the rarer side if there are so many: |excess|
+//! of marginal points is no distance. Of these the one farthest from all runs and all that are chosen already is taken, again and again: the boundary is covered where no run is. The distance is that of
 //! standardized coordinates. A level that has not seen enough of the rarer side takes every second point there: left to
 //! themselves, the farthest points of the zone lie around it.
 
@@ -48,11 +48,17 @@ pub(super) fn near_boundary(
 
 /// Numbers of the points of the zone.
 fn zone(excess: &[f64], wanted: usize) -> Vec<usize> {
+    let candidates = CANDIDATES * wanted;
     let not_unstable = excess.iter().filter(|&&excess| is_not_unstable(excess)).count();
+    let is_unstable_rare = excess.len() - not_unstable < not_unstable;
     let rare = not_unstable.min(excess.len() - not_unstable);
     let mut nearest: Vec<usize> = (0..excess.len()).collect();
     nearest.sort_by(|&a, &b| excess[a].abs().total_cmp(&excess[b].abs()).then(a.cmp(&b)));
-    nearest.truncate((2 * rare).max(CANDIDATES * wanted));
+    let rest = nearest.split_off((2 * rare).max(candidates).min(nearest.len()));
+    // Marginal points are as near as can be, however many there are.
+    let is_rare = |i: &usize| is_not_unstable(excess[*i]) != is_unstable_rare;
+    let missing = candidates.saturating_sub(nearest.iter().filter(|i| is_rare(i)).count());
+    nearest.extend(rest.into_iter().filter(is_rare).take(missing));
     nearest
 }
 
@@ -75,6 +81,9 @@ mod tests {
         assert_eq!(zone.len(), 600);
         assert!(zone.iter().all(|&i| (9_400..10_000).contains(&i)), "on both sides of the boundary");
         let stable: Vec<f64> = excess.iter().map(|excess| excess - 1.0).collect();
+        let undamped: Vec<f64> = excess.iter().map(|excess| excess.max(0.0)).collect();
+        let zone = super::zone(&undamped, 3);
+        assert_eq!(zone.iter().filter(|&&i| i >= 9_700).count(), 60, "beside marginal points, unstable ones");
         let mut nearest = super::zone(&stable, 3);
         nearest.sort_unstable();
         assert_eq!(nearest, (9_940..10_000).collect::<Vec<_>>(), "without a boundary, those nearest to one");
