@@ -17,6 +17,9 @@ const CELLS: usize = 1 << 10;
 /// Cells of the widest pieces.
 const WIDEST: usize = 64;
 
+/// Pieces of a function that is made, at most: a few dozen where it is smooth, and as many for every jump.
+const MOST: usize = 1 << 11;
+
 /// Errors that are accepted, relative to the largest value of a piece; values below [`NOTHING`] are as good as zero.
 pub(super) const TOLERANCE: f64 = 2e-14;
 const NOTHING: f64 = 1e-280;
@@ -40,6 +43,15 @@ impl Piece {
         let mut coefficients = [0.0; DEGREE + 1];
         (coefficients[0], coefficients[1]) = (0.5 * (from + to), 0.5 * (to - from));
         Self::new(ends, coefficients)
+    }
+
+    /// The same plus a straight line, so that its ends have these values.
+    fn through(mut self, values: [f64; 2]) -> Self {
+        let half = 1.0 / self.inverse_half_width;
+        let [left, right] = [values[0] - self.value(self.center - half), values[1] - self.value(self.center + half)];
+        self.coefficients[0] += 0.5 * (left + right);
+        self.coefficients[1] += 0.5 * (right - left);
+        self
     }
 
     #[inline(always)]
@@ -69,8 +81,9 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// Pieces of a rising function that is analytic between `kinks`, as many as it takes.
-    pub fn of(function: impl Fn(f64) -> f64, kinks: &[f64]) -> Self {
+    /// Pieces of a rising function that is analytic between `kinks`, as many as it takes; `None`
+    /// where more than [`MOST`] would not do, as of a function that is not known well enough.
+    pub fn of(function: impl Fn(f64) -> f64, kinks: &[f64]) -> Option<Self> {
         let mut pieces = Vec::new();
         for first in (0..CELLS).step_by(WIDEST) {
             let ends = [edge(first), edge(first + WIDEST)];
@@ -79,7 +92,7 @@ impl Pieces {
             // Between kinks halves are no ends of cells, which costs steps, not correctness.
             breaks.windows(2).for_each(|ends| divide(&function, [ends[0], ends[1]], &mut pieces));
         }
-        Self::with_cells(pieces)
+        (pieces.len() <= MOST).then(|| Self::with_cells(pieces))
     }
 
     /// Pieces between `breaks` with these coefficients; a sentence if they are no rising function on all scores.
@@ -226,25 +239,34 @@ fn edge(cell: usize) -> f64 {
     (cell as f64).mul_add(2.0 * REACH / CELLS as f64, -REACH)
 }
 
-/// One piece between `ends`, or halves of it as long as that is not exact enough. Where a density nearly vanishes its
-/// quantiles jump: a straight line is left of that, over next to no probability.
+/// One piece between `ends`, or halves of it as long as that is not exact enough, in its value or in the score that has
+/// it. Where a density nearly vanishes its quantiles jump: a straight line is left of that, over next to no
+/// probability. More than [`MOST`] pieces are given up.
 fn divide(function: &impl Fn(f64) -> f64, ends: [f64; 2], pieces: &mut Vec<Piece>) {
     /// Below the width of a cell errors are accepted of a function that is not known better.
     const CELL: f64 = 2.0 * REACH / CELLS as f64;
     const LOOSE: f64 = 1e-10;
+    const LOOSE_SCORE: f64 = 1e-13;
     const NARROWEST: f64 = CELL / (1_u64 << 34) as f64;
     const TESTS: usize = 9;
-    let piece = fitted(function, ends);
+    if pieces.len() > MOST {
+        return;
+    }
     let width = ends[1] - ends[0];
-    let tests = (0..TESTS).map(|k| ends[0] + width * (k as f64 + 0.5) / TESTS as f64);
     let values = ends.map(function);
     let largest = values.into_iter().map(f64::abs).fold(0.0, f64::max);
     let error = if width > CELL { TOLERANCE * largest } else { LOOSE * largest.max(1.0) };
-    let is_exact = |z: f64| (piece.value(z) - function(z)).abs() <= error.max(NOTHING);
-    if tests.into_iter().all(is_exact) {
-        pieces.push(piece);
-    } else if width <= NARROWEST {
+    let tests: [f64; TESTS] = std::array::from_fn(|k| ends[0] + width * (k as f64 + 0.5) / TESTS as f64);
+    let piece = fitted(function, ends);
+    if tests.iter().all(|&z| (piece.value(z) - function(z)).abs() <= error.max(NOTHING)) {
+        return pieces.push(piece);
+    }
+    let continuous = piece.through(values);
+    let has_score = |z: f64| (function(z - LOOSE_SCORE)..=function(z + LOOSE_SCORE)).contains(&continuous.value(z));
+    if width <= NARROWEST {
         pieces.push(Piece::line(ends, values));
+    } else if width <= CELL && tests.into_iter().all(has_score) {
+        pieces.push(continuous);
     } else {
         let middle = 0.5 * (ends[0] + ends[1]);
         divide(function, [ends[0], middle], pieces);
@@ -280,7 +302,7 @@ mod tests {
     #[test]
     fn smooth_functions_are_kept_to_rounding_and_undone() {
         let function = |z: f64| (0.7 * z).exp();
-        let pieces = Pieces::of(function, &[]);
+        let pieces = Pieces::of(function, &[]).unwrap();
         for k in -840..=840 {
             let z = f64::from(k) / 100.0 + 1e-3;
             assert!((pieces.at(z) - function(z)).abs() < 1e-13 * function(z), "{z}");
@@ -292,9 +314,14 @@ mod tests {
     }
 
     #[test]
+    fn noise_is_given_up() {
+        assert_eq!(Pieces::of(|z| z + 1e-8 * (1e9 * z).sin(), &[]), None);
+    }
+
+    #[test]
     fn kinks_are_ends_of_pieces() {
         let function = |z: f64| if z < 0.3 { z } else { 0.3 + 2.0 * (z - 0.3) };
-        let pieces = Pieces::of(function, &[0.3]);
+        let pieces = Pieces::of(function, &[0.3]).unwrap();
         assert!(pieces.pieces.len() <= 17);
         for z in [-8.5, -1.0, 0.2999, 0.3, 0.3001, 0.5, 8.5] {
             assert!((pieces.at(z) - function(z)).abs() < 1e-13, "{z}");
@@ -303,7 +330,7 @@ mod tests {
 
     #[test]
     fn what_is_stored_is_the_same_and_what_falls_is_refused() {
-        let pieces = Pieces::of(|z| (0.2 * z).sinh(), &[]);
+        let pieces = Pieces::of(|z| (0.2 * z).sinh(), &[]).unwrap();
         let mut coefficients: Vec<Vec<f64>> = pieces.coefficients().map(<[f64]>::to_vec).collect();
         assert_eq!(Pieces::stored(&pieces.breaks(), &coefficients), Ok(pieces.clone()));
         coefficients[3][1] = -1.0;

@@ -86,7 +86,8 @@ impl Draft {
             _ => (place.x - mean) / scale,
         };
         let origin = support.into_iter().find(|end| end.is_finite()).unwrap_or(mean);
-        let quantile = Pieces::of(|z| standard(integrated.at_score(z)), &integrated.scores_of_kinks());
+        let kinks = integrated.scores_of_kinks();
+        let quantile = Pieces::of(|z| standard(integrated.at_score(z)), &kinks).ok_or_else(unresolved)?;
         let (places, weights) = integrated.rule();
         let nodes = places.into_iter().map(standard).collect();
         let polynomials = OwnPolynomials::of_density(self.family, nodes, weights);
