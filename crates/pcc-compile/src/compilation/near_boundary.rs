@@ -2,9 +2,10 @@
 //!
 //! The *zone* are the points of smallest |excess| among those at which shares are judged, with twice the probability of
 //! the rarer side, and at least twenty candidates per wanted run, also on the rarer side if there are so many: |excess|
-//! of marginal points is no distance. Of these the one farthest from all runs and all that are chosen already is taken, again and again: the boundary is covered where no run is. The distance is that of
-//! standardized coordinates. A level that has not seen enough of the rarer side takes every second point there: left to
-//! themselves, the farthest points of the zone lie around it.
+//! of marginal points is no distance. Of these the one farthest from all runs and all that are chosen already is taken,
+//! again and again: the boundary is covered where no run is. The distance is that of standardized coordinates. A level
+//! that has not seen enough of the rarer side takes every second point there: left to themselves, the farthest points
+//! of the zone lie around it.
 
 use super::judged_points::judged_point;
 use super::trials::is_not_unstable;
