@@ -48,6 +48,17 @@ impl Sight {
         matches!(self, Self::Unknown { .. })
     }
 
+    /// The same with samples of which max Re λ is from `least` to `largest`: some may come nearer to the boundary.
+    pub fn seen_in(self, least: f64, largest: f64) -> Self {
+        match self {
+            Self::Everywhere { nearest, error, is_without_margin: true } if nearest != 0.0 => {
+                let nearest = if nearest < 0.0 { nearest.max(largest) } else { nearest.min(least) };
+                Self::Everywhere { nearest, error, is_without_margin: true }
+            }
+            other => other,
+        }
+    }
+
     /// In words, to follow "is".
     pub fn words(self) -> String {
         match self {
@@ -93,8 +104,8 @@ impl Sight {
     pub fn warning(self) -> Option<String> {
         self.is_unknown().then(|| {
             format!(
-                "the system is {}: fewer than 3 tell nothing of the error; raise design.maximum, or bound it with pcc \
-                 certify",
+                "the system is {}: fewer than 3 tell nothing of the error; let the build make more with \
+                 design.maximum, or bound it with pcc certify",
                 self.words()
             )
         })
@@ -126,6 +137,8 @@ mod tests {
         assert_eq!(words(44), "stable in a share that is not known; only 1 of 45 model runs was stable");
         let everywhere = Sight::Everywhere { nearest: -5.2, error: 0.0094, is_without_margin: true };
         assert_eq!(everywhere.words(), "stable everywhere: largest max Re λ -5.20 1/s, error at most 0.0094 1/s");
+        let seen = everywhere.seen_in(-90.0, -5.1).words();
+        assert_eq!(seen, "stable everywhere: largest max Re λ -5.10 1/s, error at most 0.0094 1/s");
         assert!(everywhere.warning().is_none() && Sight::Unknown { unstable: 0, runs: 9 }.warning().is_some());
     }
 }

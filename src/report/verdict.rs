@@ -74,14 +74,15 @@ impl EvalReport {
             let unstable = if never { String::new() } else { format!(", unstable in {unstable}") };
             return format!("is undamped: marginal in {marginal} of cases{unstable}");
         }
-        if let Some(sight) = self.only_in_text.sight {
+        // What was found of the whole domain is no answer to conditions.
+        if let Some(sight) = self.only_in_text.sight.filter(|_| self.conditions.is_empty()) {
             let is_seen = match sight {
                 Sight::Everywhere { nearest, .. } if nearest > 0.0 => self.unstable_proportion == 1.0,
                 Sight::Everywhere { .. } => self.unstable_proportion == 0.0 && self.marginal_proportion == 0.0,
                 Sight::Unknown { .. } => false,
             };
             if is_seen {
-                return format!("is {}", sight.words());
+                return format!("is {}", sight.seen_in(self.max_re.minimum, self.max_re.maximum).words());
             }
         }
         let samples = plural(self.samples as usize, "sample");

@@ -123,6 +123,9 @@ fn two_oscillators_are_stable_everywhere_with_the_distance_of_the_less_damped() 
     let sentence = eval["verdict"].as_str().unwrap();
     assert!(sentence.starts_with("two is stable everywhere: largest max Re λ -0.300"), "{sentence}");
     assert_eq!(eval["unstable_proportion"], 0.0);
+    let part = json(&["eval", "two.pcc", "-n", "1000", "--where", "c_2=0.8..0.9"]);
+    let sentence = part["verdict"].as_str().unwrap();
+    assert!(sentence.contains("is never unstable in 1 000 samples"), "not of the whole domain: {sentence}");
     assert!(run(&["inspect", "two.pcc"]).contains("stable everywhere: largest max Re λ -0.300"));
     // Mirrored, it is unstable everywhere.
     let unstable = study.replace("2 * c", "-2 * c").replace("\"two\"", "\"grows\"");
