@@ -1,6 +1,7 @@
 //! Inputs that depend on each other: shares with a closed form, conditions, sensitivities, the clutch, files, refusals.
 
 use crate::support::command::{output, refusal};
+use crate::support::studies::{built_from, json, number};
 use crate::support::{build, in_one_line, invariants_study, text};
 use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;
@@ -10,8 +11,6 @@ use pcc_evaluate::probability::random::Purpose;
 use pcc_evaluate::surrogate::Surrogate;
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use tempfile::TempDir;
 
 /// An oscillator with λ = (x + y + z − 1.5) ± ≈10i, of which z is independent; Pearson's correlation of x and y is 0.6.
 const OSCILLATOR: &str = "format = 1
@@ -33,27 +32,6 @@ pearson = [[\"x\", \"y\", 0.6]]
 /// The oscillator's surrogate.
 pub fn surrogate() -> Surrogate {
     build(&Study::from_toml(OSCILLATOR).unwrap())
-}
-
-fn folder_with(study: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("study.toml"), study).unwrap();
-    folder
-}
-
-fn built_from(study: &str) -> TempDir {
-    let folder = folder_with(study);
-    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
-    folder
-}
-
-fn json(folder: &Path, arguments: &[&str]) -> Value {
-    serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
-}
-
-#[track_caller]
-fn number(report: &Value, pointer: &str) -> f64 {
-    report.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} of {report}"))
 }
 
 /// Conditions and the share of stable systems: the first is Φ(0.2/√0.212), the second that of the conditional law, the

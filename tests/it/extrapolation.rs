@@ -3,6 +3,7 @@
 use crate::laws::{NORMAL, UNIFORM, built, oscillator};
 use crate::support::command::{output, refusal};
 use crate::support::in_one_line;
+use crate::support::studies::{built_from, json, number};
 use pcc_evaluate::foundation::{InstructionSet, Silent};
 use serde_json::Value;
 use std::fs;
@@ -15,19 +16,7 @@ fn with_law(law: &str) -> String {
 }
 
 fn folder_with(law: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("study.toml"), with_law(law)).unwrap();
-    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
-    folder
-}
-
-fn json(folder: &Path, arguments: &[&str]) -> Value {
-    serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
-}
-
-#[track_caller]
-fn number(report: &Value, pointer: &str) -> f64 {
-    report.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} of {report}"))
+    built_from(&with_law(law))
 }
 
 /// Where the model was run, along x.

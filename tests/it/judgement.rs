@@ -2,11 +2,10 @@
 //! marginal points.
 
 use crate::support::command::{output, refusal};
+use crate::support::studies::{built_from, folder_with, json};
 use crate::support::{in_one_line, text};
 use std::f64::consts::TAU;
 use std::fs;
-use std::path::Path;
-use tempfile::TempDir;
 
 /// Two oscillators of 10 and 30 rad/s. The damping of the first is uniform between 0 and 0.2 1/s, that of the second is
 /// one.
@@ -16,23 +15,6 @@ fn oscillators(spectrum: &str) -> String {
          K = [[100, 0], [0, 900]]\n[inputs]\nc = {{ distribution = \"uniform\", lower = 0.0, upper = 0.2 }}\n\
          [spectrum]\n{spectrum}\n"
     )
-}
-
-fn folder_with(study: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("study.toml"), study).unwrap();
-    folder
-}
-
-fn built_from(study: &str) -> TempDir {
-    let folder = folder_with(study);
-    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
-    folder
-}
-
-/// The JSON document that a command prints.
-fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
-    serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
 }
 
 fn share(report: &serde_json::Value, name: &str) -> f64 {

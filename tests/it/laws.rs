@@ -1,15 +1,13 @@
 //! Inputs of other laws than the uniform one: shares with a closed form, the clutch, files, and what is refused.
 
 use crate::support::command::{output, refusal};
+use crate::support::studies::{built_from, folder_with, json, number};
 use crate::support::{build, in_one_line, invariants_study, text};
 use pcc_compile::reference::compare_with_model;
 use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use pcc_evaluate::surrogate::Surrogate;
-use serde_json::Value;
 use std::fs;
-use std::path::Path;
-use tempfile::TempDir;
 
 /// An oscillator with λ = (Σ inputs − 1.1) ± ≈10i.
 pub(crate) fn oscillator(inputs: &[(&str, &str)], threshold: f64, rest: &str) -> String {
@@ -28,27 +26,6 @@ pub(crate) const NORMAL: &str = "\"normal\", mean = 1.0, std = 0.2";
 /// The surrogate of an oscillator with a uniform and a normal input.
 pub(crate) fn built() -> Surrogate {
     build(&Study::from_toml(&oscillator(&[("u", UNIFORM), ("x", NORMAL)], 1.1, "")).unwrap())
-}
-
-pub(crate) fn folder_with(study: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("study.toml"), study).unwrap();
-    folder
-}
-
-pub(crate) fn built_from(study: &str) -> TempDir {
-    let folder = folder_with(study);
-    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
-    folder
-}
-
-pub(crate) fn json(folder: &Path, arguments: &[&str]) -> Value {
-    serde_json::from_str(&output(folder, &[arguments, &["--json"]].concat())).unwrap()
-}
-
-#[track_caller]
-pub(crate) fn number(report: &Value, pointer: &str) -> f64 {
-    report.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} of {report}"))
 }
 
 /// A law, c, F(c), an interval, and F(c) on condition that the input lies there; from the distribution functions, by

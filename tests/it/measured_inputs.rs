@@ -1,8 +1,9 @@
 //! Inputs of single levels and of measured values: shares against sums over them, files, and what is refused.
 
-use crate::laws::{built_from, folder_with, json, number, oscillator};
+use crate::laws::oscillator;
 use crate::support::command::{output, refusal};
 use crate::support::in_one_line;
+use crate::support::studies::{built_from, folder_with, json, number};
 use pcc_compile::study::Study;
 use std::fs;
 use std::path::Path;

@@ -2,6 +2,7 @@
 
 pub mod command;
 pub mod reproduction;
+pub mod studies;
 
 use pcc_compile::reference::ModelSample;
 use pcc_compile::study::Study;
