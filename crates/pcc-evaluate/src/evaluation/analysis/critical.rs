@@ -99,7 +99,8 @@ impl CriticalValues {
 
     /// Mean critical value of the samples that lose stability, in the input's own unit; `None` if there are none.
     pub fn mean(&self) -> Option<f64> {
-        self.of_lost(Moments::mean)
+        // Rounding of the sum takes it no farther than the values.
+        self.of_lost(|values| values.mean().max(values.minimum()).min(values.maximum()))
     }
 
     /// Smallest critical value, in the input's own unit; `None` if no sample loses stability.
