@@ -1,7 +1,7 @@
 //! The answer comes first and fits a terminal, and shares near 0 and 1 keep their digits in every face.
 
 use crate::support::command::{output, pcc};
-use crate::support::{in_one_line, repository};
+use crate::support::{in_one_line, repository, text};
 use std::fs;
 use std::path::Path;
 
@@ -76,11 +76,13 @@ fn no_line_of_a_report_is_wider_than_eighty_columns() {
         &["compare", "clutch-r8.pcc", "--study", "clutch-r8.toml", "-n", "500", "--details"],
         &["certify", "clutch-r8.pcc", "--study", "clutch-r8.toml", "--runs", "50", "-o", "certified.pcc"],
         &["reference", "clutch-r8.toml", "-n", "500", "--details"],
-        &["build", "clutch-r8.toml", "-o", "built.pcc", "--details"],
+        &["build", "few.toml", "-o", "built.pcc", "--details"],
     ];
+    let few = format!("{}[design]\nmaximum = 27\n", text("surrogates/clutch-r8.toml"));
+    fs::write(folder.path().join("few.toml"), few).unwrap();
     for command in commands {
-        let text = output(folder.path(), command);
-        assert!(widest(&text) <= 80, "{command:?}: {text}");
+        let printed = output(folder.path(), command);
+        assert!(widest(&printed) <= 80, "{command:?}: {printed}");
     }
     let inspected = output(folder.path(), &["inspect", "certified.pcc"]);
     assert!(widest(&inspected) <= 80, "{inspected}");

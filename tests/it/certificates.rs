@@ -7,13 +7,14 @@ use pcc_compile::study::Study;
 use pcc_evaluate::foundation::Silent;
 use pcc_evaluate::probability::statistics::Proportion;
 use pcc_evaluate::surrogate::{AssumedBound, RareSide, Surrogate, Withheld};
+use std::sync::OnceLock;
 
 const RUNS: u64 = 300;
 const LEVEL: f64 = 0.95;
 
-/// A deliberately poor surrogate: components with 8 inputs on few runs.
+/// A deliberately poor surrogate: components with 4 inputs on few runs.
 fn poor(runs: usize) -> (Study, Surrogate) {
-    let mut study = shipped_study(8);
+    let mut study = shipped_study(4);
     (study.design.initial, study.design.maximum) = (runs, runs);
     let surrogate = build(&study);
     (study, surrogate)
@@ -23,13 +24,13 @@ fn poor(runs: usize) -> (Study, Surrogate) {
 fn the_truth_lies_inside_the_bound_in_at_least_95_percent_of_repetitions() {
     // 50 repetitions on each of four degrees of badness; the reference has an error of 0.03 %.
     let truth =
-        crate::support::csv_rows("tests/data/stability_reference.csv").into_iter().find(|row| row[0] == 8.0).unwrap()
+        crate::support::csv_rows("tests/data/stability_reference.csv").into_iter().find(|row| row[0] == 4.0).unwrap()
             [2];
     let alone = Proportion { hits: (truth * RUNS as f64) as u64, samples: RUNS }.clopper_pearson(LEVEL);
     let (mut inside, mut above, mut below, mut repetitions) = (0, 0, 0, 0);
-    for runs in [30, 60, 120, 240] {
+    for runs in [10, 15, 25, 80] {
         let (study, surrogate) = poor(runs);
-        let misclassified = model_sample(8).compare(&surrogate).unwrap().misclassified_percent();
+        let misclassified = model_sample(4).compare(&surrogate).unwrap().misclassified_percent();
         for seed in 1..=50 {
             let certificate = certify_with_model(&surrogate, &study, RUNS, seed, LEVEL, &Silent).unwrap();
             repetitions += 1;
@@ -56,17 +57,22 @@ fn good_surrogates_are_certified_to_less_than_half_the_width_of_runs_alone() {
     assert!(width < 0.4 * (alone.upper - alone.lower), "{width}");
 }
 
-/// The clutch with a friction that makes it squeal in a thousandth of all cases.
-fn rare() -> Study {
-    Study::from_toml(&text("surrogates/clutch-r4.toml").replace("upper = 0.5", "upper = 0.0723")).unwrap()
+/// The clutch with a friction that makes it squeal in a thousandth of all cases, built once for all tests.
+fn rare() -> &'static (Study, Surrogate) {
+    static RARE: OnceLock<(Study, Surrogate)> = OnceLock::new();
+    RARE.get_or_init(|| {
+        let study = text("surrogates/clutch-r4.toml").replace("upper = 0.5", "upper = 0.0723");
+        let study = Study::from_toml(&study).unwrap();
+        let surrogate = build(&study);
+        (study, surrogate)
+    })
 }
 
 #[test]
 fn a_share_of_a_thousandth_is_bounded_on_both_sides() {
-    let study = rare();
-    let surrogate = build(&study);
+    let (study, surrogate) = rare();
     for seed in 1..=3 {
-        let certificate = certify_with_model(&surrogate, &study, RUNS, seed, LEVEL, &Silent).unwrap();
+        let certificate = certify_with_model(surrogate, study, RUNS, seed, LEVEL, &Silent).unwrap();
         let strata = certificate.strata.unwrap();
         assert_eq!((certificate.samples, strata.rare_side), (450, RareSide::NotStable));
         assert_eq!((strata.outside.rare, strata.inside.rare), (0, 50));
@@ -84,9 +90,9 @@ fn a_share_of_a_thousandth_is_bounded_on_both_sides() {
 #[test]
 fn few_samples_do_not_look_as_if_a_certificate_contradicted_them() {
     let folder = tempfile::tempdir().unwrap();
-    let study = rare();
-    let mut surrogate = build(&study);
-    surrogate.certificates.push(certify_with_model(&surrogate, &study, 30, 1, LEVEL, &Silent).unwrap());
+    let (study, surrogate) = rare();
+    let mut surrogate = surrogate.clone();
+    surrogate.certificates.push(certify_with_model(&surrogate, study, 30, 1, LEVEL, &Silent).unwrap());
     surrogate.save(folder.path().join("rare.pcc")).unwrap();
     let said = output(folder.path(), &["eval", "rare.pcc", "-n", "100"]);
     assert!(said.contains("none of 100") && !said.contains("contradicts"), "{said}");
@@ -97,11 +103,10 @@ fn few_samples_do_not_look_as_if_a_certificate_contradicted_them() {
 
 #[test]
 fn certificates_are_the_same_on_any_number_of_threads() {
-    let study = rare();
-    let surrogate = build(&study);
+    let (study, surrogate) = rare();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| certify_with_model(&surrogate, &study, 30, 4, LEVEL, &Silent).unwrap())
+        pool.install(|| certify_with_model(surrogate, study, 30, 4, LEVEL, &Silent).unwrap())
     };
     let one = on(1);
     assert!(one == on(2) && one == on(8));
@@ -124,9 +129,9 @@ fn a_surrogate_that_is_wrong_far_from_its_boundary_is_contradicted_and_has_no_se
 
 #[test]
 fn a_certificate_on_fewer_than_ten_runs_is_refused() {
-    let study = rare();
+    let (study, _) = rare();
     let surrogate = built("clutch-r4");
-    let other = certify_with_model(surrogate, &study, 300, 1, LEVEL, &Silent);
+    let other = certify_with_model(surrogate, study, 300, 1, LEVEL, &Silent);
     assert!(matches!(other, Err(ReferenceError::OtherProblem { .. })), "{other:?}");
     let study = crate::support::invariants_study(4);
     let few = certify_with_model(surrogate, &study, 9, 1, LEVEL, &Silent);
@@ -135,21 +140,20 @@ fn a_certificate_on_fewer_than_ten_runs_is_refused() {
 
 #[test]
 fn the_runs_for_a_width_are_known_before_any_is_made() {
-    let study = rare();
-    let surrogate = build(&study);
-    let needed = runs_for_width(&surrogate, 0.0102, 1, LEVEL, &Silent).unwrap();
+    let (study, surrogate) = rare();
+    let needed = runs_for_width(surrogate, 0.0102, 1, LEVEL, &Silent).unwrap();
     assert_eq!(needed.rare_side, RareSide::NotStable);
     let runs = needed.runs[0];
     assert!((290..=300).contains(&runs.outside) && runs.inside == 50, "{runs:?}");
     assert_eq!(runs.layer, runs.outside.div_ceil(3));
     // A certificate of this seed on so many runs has this width.
-    let certificate = certify_with_model(&surrogate, &study, runs.outside, 1, LEVEL, &Silent).unwrap();
+    let certificate = certify_with_model(surrogate, study, runs.outside, 1, LEVEL, &Silent).unwrap();
     let strata = certificate.strata.unwrap();
     assert_eq!(strata.outside.rare, 0);
     let width = strata.rare_upper - needed.share.value();
     assert!(width <= 0.0102 && width > 0.0101, "{width}");
     assert!(needed.runs[1].outside > runs.outside && needed.runs[2].outside > needed.runs[1].outside);
-    let narrow = runs_for_width(&surrogate, 1e-6, 1, LEVEL, &Silent);
+    let narrow = runs_for_width(surrogate, 1e-6, 1, LEVEL, &Silent);
     assert!(matches!(narrow, Err(ReferenceError::TooNarrow { .. })), "{narrow:?}");
 }
 
