@@ -23,6 +23,9 @@
 //! f is the share of runs that the model itself calls otherwise than the modes the surrogate carries: modes left out,
 //! or real eigenvalues. More runs do not lower f, so the build does not ask for them.
 //!
+//! All of this supposes fits that are good: of a poor one, the points may all lie on one side whatever residual is added.
+//! Where more runs are misjudged by the fit without them than ε explains, their share is an error that counts, too.
+//!
 //! Residuals of points that chose the settings of a fit flatter it, so rms and mean use blind residuals
 //! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the
 //! quantiles, residuals that are not blind are doubled. `tools/src/bin/decision_estimate.rs` compares estimate and
@@ -32,7 +35,7 @@
 use super::blindness::{Groups, Sight, unstable_runs};
 use super::judged_points::{POINTS, at_judged_points, points_for};
 use super::trials::{Judge, Shares, is_not_unstable, not_unstable};
-use super::undecided::{is_chance, undecided};
+use super::undecided::{is_chance, misjudged, undecided};
 use crate::campaign::Run;
 use crate::fitting::fit::Fitted;
 use pcc_evaluate::components::spectral_abscissa;
@@ -165,6 +168,8 @@ pub(super) struct Judged<'a> {
     /// Of its components at its runs.
     pub values: &'a [Vec<f64>],
     pub runs: &'a [Run],
+    /// Which runs are those of the design: a share of others is none of cases.
+    pub of_design: Vec<usize>,
 }
 
 /// Judges a level; `before` is the judgement of the level before. If there is none and the level is the last, nothing
@@ -175,7 +180,7 @@ pub(super) fn judge(
     purpose: Purpose,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
-    let Judged { surrogate, fitted, values, runs } = level;
+    let Judged { surrogate, fitted, values, runs, of_design } = level;
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
     let Some(left_out) = left_out else {
         return Ok(Judgement::default());
@@ -195,7 +200,13 @@ pub(super) fn judge(
     let judge = Judge::new(surrogate, runs, POINTS, observer)?;
     let mut found = Found::by(&judge, &residuals, before, forgotten)?;
     let undecided = undecided(surrogate, values, &residuals.seen, runs);
-    let is_doubtful = !is_chance(undecided, BOTH_SIDES * found.at.mean_change * runs.len() as f64);
+    let is_chance_of = |count, runs: usize| is_chance(count, BOTH_SIDES * found.at.mean_change * runs as f64);
+    let is_doubtful = !is_chance_of(undecided, runs.len());
+    let misjudged = misjudged(surrogate, values, &residuals.seen, runs, &of_design);
+    let misjudged = match is_chance_of(misjudged, of_design.len()) {
+        true => 0.0,
+        false => misjudged as f64 / of_design.len() as f64,
+    };
     if sight.is_blind() && sight.rare() == 0 {
         let is_stable = sight.unstable == 0;
         sight.clearance = groups.clearance(surrogate, judge.block(), is_stable);
@@ -204,13 +215,13 @@ pub(super) fn judge(
             sight.clearance = groups.clearance(surrogate, &block, is_stable);
         }
     }
-    let mut judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful) };
+    let mut judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful, misjudged) };
     let not_unstable = judge.not_unstable();
     let points = points_for(surrogate, not_unstable.min(POINTS - not_unstable));
     if points > POINTS && purpose.tolerance.is_some_and(|tolerance| judgement.is_within(tolerance)) {
         let judge = Judge::new(surrogate, runs, points, observer)?;
         found = Found::by(&judge, &residuals, before, forgotten)?;
-        judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful) };
+        judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful, misjudged) };
     }
     if purpose.tolerance.is_some() {
         judgement.excess.clone_from(&judge.block().excess);
@@ -271,8 +282,9 @@ impl Found {
         Ok(Self { share, at, error, reducible_error })
     }
 
-    fn judgement(&self, is_doubtful: bool) -> Judgement {
-        let Self { share, error, reducible_error, .. } = *self;
+    fn judgement(&self, is_doubtful: bool, misjudged: f64) -> Judgement {
+        let Self { share, .. } = *self;
+        let [error, reducible_error] = [self.error, self.reducible_error].map(|error| Some(error?.hypot(misjudged)));
         Judgement { share: Some(share), error, reducible_error, is_doubtful, ..Judgement::default() }
     }
 }

@@ -177,7 +177,8 @@ impl<'a> Levels<'a> {
         let is_last = next.is_none() || self.stopping.needs_no_judgement(&results);
         let before = self.previous.as_ref().map(|previous| Before { previous, is_regrouped });
         let tolerance = self.study.fit.proportion_tolerance;
-        let judged = Judged { surrogate: &surrogate, fitted: &results, values: &level.values, runs };
+        let of_design = (0..runs.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
+        let judged = Judged { surrogate: &surrogate, fitted: &results, values: &level.values, runs, of_design };
         let is_final = is_batch && self.clear_batches + 1 >= CLEAR_BATCHES;
         let mut judgement = judge(judged, before, Purpose { tolerance, is_last, is_final }, observer)?;
         let is_first = self.previous.is_none();

@@ -4,7 +4,10 @@
 //! out on top elsewhere. So every eigenvalue counts. A run is *undecided* if one of its eigenvalues is predicted, by
 //! the fit without the run, with an error of Re λ that is larger than |Re λ|, and so large that it might be the one
 //! with the largest Re λ. Some runs lie that near to the boundary by chance; more of them are a doubt.
+//!
+//! A run is *misjudged* if the fit without it calls it stable where it is not, or the other way round.
 
+use super::trials::is_not_unstable;
 use crate::campaign::Run;
 use crate::mechanics::spectrum::nearest;
 use nalgebra::Complex;
@@ -26,6 +29,21 @@ pub(super) fn undecided(surrogate: &Surrogate, values: &[Vec<f64>], residuals: &
             .any(|output| is_unknown(output, &exact, &predicted, &surrogate.verdict, run.spectrum.top().excess))
     };
     runs.iter().enumerate().filter(is_undecided).count()
+}
+
+/// Number of misjudged runs among `chosen`, with values and residuals as of [`undecided`].
+pub(super) fn misjudged(
+    surrogate: &Surrogate,
+    values: &[Vec<f64>],
+    residuals: &[Vec<f64>],
+    runs: &[Run],
+    chosen: &[usize],
+) -> usize {
+    let is_misjudged = |&&i: &&usize| {
+        let predicted: Vec<f64> = values.iter().zip(&residuals[i]).map(|(value, rest)| value[i] - rest).collect();
+        is_not_unstable(surrogate.top(&predicted).excess) != is_not_unstable(runs[i].spectrum.top().excess)
+    };
+    chosen.iter().filter(is_misjudged).count()
 }
 
 /// Whether so many undecided runs are no wonder where so many are `expected`: P(X ≥ count) is not below [`RARE`] for a
