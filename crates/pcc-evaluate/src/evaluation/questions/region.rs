@@ -109,23 +109,7 @@ impl Region {
         for lane in 0..BLOCK_POINTS {
             units.0[lane] = width.mul_add(units.0[lane], lower);
         }
-        match &self.germs[input] {
-            Germ::Uniform => {}
-            Germ::Normal => {
-                for lane in 0..BLOCK_POINTS {
-                    units.0[lane] = Germ::Normal.at(units.0[lane]);
-                }
-            }
-            Germ::Own(own) => {
-                // Normal scores in lanes, then the pieces, which are looked up one by one.
-                for lane in 0..BLOCK_POINTS {
-                    units.0[lane] = Germ::Normal.at(units.0[lane]);
-                }
-                for lane in 0..BLOCK_POINTS {
-                    units.0[lane] = own.at_score(units.0[lane]);
-                }
-            }
-        }
+        self.germs[input].at_lanes(&mut units.0);
     }
 }
 

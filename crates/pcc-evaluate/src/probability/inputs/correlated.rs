@@ -6,7 +6,7 @@
 //! interval, whose w lies in an interval, too; then all others. So every point has exactly the conditional law.
 
 use super::germ::{Germ, OUTERMOST};
-use super::normal_quantile::{at_centred, normal_at};
+use super::normal_quantile::{at_centred, normal_at, normal_at_lanes};
 use super::normal_tail::tails;
 use super::space::Input;
 use crate::probability::dependence::GaussianCopula;
@@ -176,9 +176,10 @@ impl Correlated {
             let numbers = columns[step.input].lanes_mut();
             match &step.interval {
                 None => {
-                    for number in numbers {
-                        *number = normal_at(2.0f64.mul_add(*number, -1.0));
+                    for number in numbers.iter_mut() {
+                        *number = 2.0f64.mul_add(*number, -1.0);
                     }
+                    normal_at_lanes(numbers);
                 }
                 Some(between) => {
                     for number in numbers {

@@ -1,6 +1,6 @@
 //! Standardized variables: what the polynomials of an expansion are functions of.
 
-use super::normal_quantile::{at_centred, distribution, normal_at};
+use super::normal_quantile::{at_centred, distribution, normal_at, normal_at_lanes};
 use super::normal_tail::tails;
 use super::own_variable::OwnVariable;
 use super::pieces;
@@ -49,6 +49,16 @@ impl Germ {
             Self::Uniform => centred,
             Self::Normal => normal_at(centred),
             Self::Own(own) => own.at_score(normal_at(centred)),
+        }
+    }
+
+    /// [`Self::at`] in all lanes.
+    #[inline(always)]
+    pub(crate) fn at_lanes<const LANES: usize>(&self, numbers: &mut [f64; LANES]) {
+        if !matches!(self, Self::Uniform) {
+            normal_at_lanes(numbers);
+            // The pieces of laws of their own are looked up one by one.
+            self.at_scores(numbers);
         }
     }
 

@@ -124,34 +124,88 @@ pub(super) fn upper_quantile(p: f64) -> f64 {
 /// ξ at 2Φ(ξ) − 1 = `centred`.
 #[inline(always)]
 pub(crate) fn normal_at(centred: f64) -> f64 {
-    // Exact: `centred` is above −1 and below 1.
-    let tail = 0.5 * (1.0 - centred.abs());
-    at_centred(centred, tail)
+    at_centred(centred, tail_of(centred))
 }
 
-/// The same, given the probability of the tail on its side as well.
+/// The same in all lanes and bits, step by step, so that every step is a loop of vector operations.
 #[inline(always)]
-pub(super) fn at_centred(centred: f64, tail: f64) -> f64 {
-    let q = 0.5 * centred;
-    let middle = q * ratio(&CENTRAL, (-q).mul_add(q, MIDDLE * MIDDLE).max(0.0));
-    let r = (-logarithm(tail)).max(0.0).sqrt();
-    let near = ratio(&NEAR_TAIL, r - 1.6);
-    let far = ratio(&FAR_TAIL, r - FAR);
-    let beyond = if r <= FAR { near } else { far };
-    let side = if q < 0.0 { -beyond } else { beyond };
-    if q.abs() <= MIDDLE { middle } else { side }
-}
-
-#[inline(always)]
-fn ratio(coefficients: &[[f64; 8]; 2], x: f64) -> f64 {
-    let polynomial = |c: &[f64; 8]| {
-        let mut value = c[7];
-        for k in (0..7).rev() {
-            value = value.mul_add(x, c[k]);
+pub(crate) fn normal_at_lanes<const LANES: usize>(numbers: &mut [f64; LANES]) {
+    let mut depths = [0.0; LANES];
+    for lane in 0..LANES {
+        depths[lane] = depth(tail_of(numbers[lane]));
+    }
+    let mut tails = [Fraction::default(); LANES];
+    for lane in 0..LANES {
+        tails[lane] = near(depths[lane]);
+    }
+    // One number in 10¹¹ is that far out.
+    if depths.iter().fold(0.0, |deepest, &depth| f64::max(deepest, depth)) > FAR {
+        for lane in 0..LANES {
+            tails[lane] = tail(depths[lane]);
         }
-        value
-    };
-    polynomial(&coefficients[0]) / polynomial(&coefficients[1])
+    }
+    for lane in 0..LANES {
+        numbers[lane] = score(0.5 * numbers[lane], tails[lane]);
+    }
+}
+
+/// ξ, given the probability of the tail on its side as well.
+#[inline(always)]
+pub(super) fn at_centred(centred: f64, p: f64) -> f64 {
+    score(0.5 * centred, tail(depth(p)))
+}
+
+/// The probability of the tail. Exact: `centred` is above −1 and below 1.
+#[inline(always)]
+fn tail_of(centred: f64) -> f64 {
+    0.5 * (1.0 - centred.abs())
+}
+
+/// r = √(−ln p).
+#[inline(always)]
+fn depth(p: f64) -> f64 {
+    (-logarithm(p)).max(0.0).sqrt()
+}
+
+/// Numerator and denominator.
+#[derive(Clone, Copy, Default)]
+struct Fraction([f64; 2]);
+
+impl Fraction {
+    #[inline(always)]
+    fn at(coefficients: &[[f64; 8]; 2], x: f64) -> Self {
+        let polynomial = |c: &[f64; 8]| {
+            let mut value = c[7];
+            for k in (0..7).rev() {
+                value = value.mul_add(x, c[k]);
+            }
+            value
+        };
+        Self([polynomial(&coefficients[0]), polynomial(&coefficients[1])])
+    }
+}
+
+/// |ξ| in a tail of depth r.
+#[inline(always)]
+fn tail(r: f64) -> Fraction {
+    if r <= FAR { near(r) } else { Fraction::at(&FAR_TAIL, r - FAR) }
+}
+
+#[inline(always)]
+fn near(r: f64) -> Fraction {
+    Fraction::at(&NEAR_TAIL, r - 1.6)
+}
+
+/// ξ at p = ½ + q, given |ξ| as if it were in the tail.
+#[inline(always)]
+fn score(q: f64, Fraction(tail): Fraction) -> f64 {
+    let Fraction(middle) = Fraction::at(&CENTRAL, (-q).mul_add(q, MIDDLE * MIDDLE).max(0.0));
+    let is_middle = q.abs() <= MIDDLE;
+    let side = if q < 0.0 { -1.0 } else { 1.0 };
+    let numerator = if is_middle { middle[0] } else { tail[0] };
+    let denominator = if is_middle { middle[1] } else { tail[1] };
+    let factor = if is_middle { q } else { side };
+    factor * (numerator / denominator)
 }
 
 /// ln x of a positive normal number, to a part in 10¹⁵ of it or of 1: x = 2ᵉ m with m near 1, and
@@ -164,15 +218,26 @@ fn logarithm(x: f64) -> f64 {
     const MANTISSA: u64 = 0x000F_FFFF_FFFF_FFFF;
     /// 2⁵²: adding it turns a small integer into the last bits of a double.
     const SHIFT: f64 = 4_503_599_627_370_496.0;
+    /// 1/3, 1/5, …: the Taylor series of artanh.
+    const TERMS: usize = 10;
+    const INVERSE_ODD: [f64; TERMS] = {
+        let mut terms = [0.0; TERMS];
+        let mut k = 0;
+        while k < TERMS {
+            terms[k] = 1.0 / (2 * k + 3) as f64;
+            k += 1;
+        }
+        terms
+    };
     let bits = x.to_bits().wrapping_add(ONE - ROOT);
     // The exponent, 1023 above what it means, as a double without a conversion.
     let exponent = f64::from_bits((bits >> 52) | SHIFT.to_bits()) - SHIFT - 1023.0;
     let m = f64::from_bits((bits & MANTISSA).wrapping_add(ROOT));
     let s = (m - 1.0) / (m + 1.0);
     let z = s * s;
-    let mut series = 0.0;
-    for k in (1..=10).rev() {
-        series = f64::mul_add(series, z, 1.0 / f64::from(2 * k + 1));
+    let mut series = INVERSE_ODD[TERMS - 1];
+    for k in (0..TERMS - 1).rev() {
+        series = series.mul_add(z, INVERSE_ODD[k]);
     }
     let artanh = (s * z).mul_add(series, s);
     exponent.mul_add(LN_2, 2.0 * artanh)
@@ -202,6 +267,22 @@ mod tests {
             assert_eq!(upper_quantile(p), -quantile(p), "{p:e}");
         }
         assert_eq!(normal_at(0.0), 0.0);
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_single_numbers() {
+        let numbers: [f64; 64] = std::array::from_fn(|k| match k {
+            0 => -1.0 + f64::EPSILON,
+            1 => 1.0 - f64::EPSILON / 2.0,
+            2 => 0.0,
+            _ => (k as f64 * 0.731).sin(),
+        });
+        for outermost in [1.0, 0.999, 0.8] {
+            let mut lanes = numbers.map(|number| number * outermost);
+            let expected = lanes.map(|number| normal_at(number).to_bits());
+            normal_at_lanes(&mut lanes);
+            assert_eq!(lanes.map(f64::to_bits), expected);
+        }
     }
 
     #[test]
