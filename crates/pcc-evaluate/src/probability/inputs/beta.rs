@@ -1,10 +1,11 @@
 //! The beta law on any interval, whose polynomials are those of Jacobi.
 
 use super::density::{Density, Place};
-use super::law::positive;
+use super::law::{finite, positive};
 use super::marginal::Polynomials;
+use super::marginal_error::{MarginalError, plain};
 use super::shaped::Draft;
-use super::uniform::{MarginalError, Uniform};
+use super::uniform::Uniform;
 
 /// Density (x − lower)^(α − 1) (upper − x)^(β − 1).
 #[derive(Debug)]
@@ -26,7 +27,7 @@ pub(super) fn beta(alpha: f64, beta: f64, [lower, upper]: [f64; 2]) -> Result<Dr
     for (name, value) in [("alpha", alpha), ("beta", beta)] {
         positive(name, value)?;
         if !SHAPES.contains(&value) {
-            return Err(MarginalError::Parameter { name, value, expected: "from 0.05 to 1e6" });
+            return Err(MarginalError::parameter(name, value, "from 0.05 to 1e6"));
         }
     }
     let interval = Uniform::new(lower, upper)?;
@@ -37,6 +38,38 @@ pub(super) fn beta(alpha: f64, beta: f64, [lower, upper]: [f64; 2]) -> Result<Dr
         family: "jacobi",
         default: Polynomials::Own,
     })
+}
+
+/// That with this mean and standard deviation: α + β = m (1 − m)/s² − 1, with mean m and standard deviation s in units
+/// of the interval.
+///
+/// # Errors
+///
+/// As [`beta`]; the mean must lie between the bounds, and values between bounds scatter only so much.
+pub(super) fn beta_with_moments(mean: f64, std: f64, [lower, upper]: [f64; 2]) -> Result<Draft, MarginalError> {
+    let (mean, std) = (finite("mean", mean)?, positive("std", std)?);
+    let interval = Uniform::new(lower, upper)?;
+    if !(lower < mean && mean < upper) {
+        let expected = format!("between lower ({}) and upper ({})", plain(&lower), plain(&upper));
+        return Err(MarginalError::parameter("mean", mean, expected));
+    }
+    let width = 2.0 * interval.half_width();
+    let share = (mean - lower) / width;
+    let shares = [share, 1.0 - share];
+    let (least, largest) = (shares[0].min(shares[1]), shares[0].max(shares[1]));
+    let sum = shares[0] * shares[1] / (std / width).powi(2) - 1.0;
+    if !(SHAPES.contains(&(least * sum)) && SHAPES.contains(&(largest * sum))) {
+        let widest = |shape: f64| width * (least * largest / (1.0 + shape)).sqrt();
+        let [from, to] = [SHAPES.end() / largest, SHAPES.start() / least].map(|sum| plain(&three_digits(widest(sum))));
+        let expected = format!("from {from} to {to} with this mean between lower and upper");
+        return Err(MarginalError::parameter("std", std, expected));
+    }
+    beta(shares[0] * sum, shares[1] * sum, [lower, upper])
+}
+
+/// A number for people.
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
 }
 
 impl Beta {

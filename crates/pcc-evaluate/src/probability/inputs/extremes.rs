@@ -3,8 +3,8 @@
 use super::density::{Density, Place};
 use super::law::{finite, positive};
 use super::marginal::Polynomials;
+use super::marginal_error::MarginalError;
 use super::shaped::Draft;
-use super::uniform::MarginalError;
 
 /// Waiting times that remember nothing, from 0: density e^(−x/mean).
 #[derive(Debug)]
@@ -53,7 +53,7 @@ pub(super) fn weibull(shape: f64, scale: f64) -> Result<Draft, MarginalError> {
     const SHAPES: std::ops::RangeInclusive<f64> = 0.1..=1e4;
     let (shape, scale) = (positive("shape", shape)?, positive("scale", scale)?);
     if !SHAPES.contains(&shape) {
-        return Err(MarginalError::Parameter { name: "shape", value: shape, expected: "from 0.1 to 10000" });
+        return Err(MarginalError::parameter("shape", shape, "from 0.1 to 10000"));
     }
     // Below, quantiles spread over orders of magnitude, and so do moments.
     let default = if shape < 0.8 { Polynomials::Hermite } else { Polynomials::Own };

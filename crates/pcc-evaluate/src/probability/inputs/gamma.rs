@@ -3,8 +3,8 @@
 use super::density::{Density, Place};
 use super::law::positive;
 use super::marginal::Polynomials;
+use super::marginal_error::MarginalError;
 use super::shaped::Draft;
-use super::uniform::MarginalError;
 
 /// Density x^(k − 1) e^(−x/θ) of shape k and scale θ, from 0.
 #[derive(Debug)]
@@ -24,17 +24,30 @@ const SHAPES: std::ops::RangeInclusive<f64> = 0.05..=1e6;
 pub(super) fn gamma(shape: f64, scale: f64) -> Result<Draft, MarginalError> {
     let (shape, scale) = (positive("shape", shape)?, positive("scale", scale)?);
     if !SHAPES.contains(&shape) {
-        let expected =
-            "from 0.05 to 1e6 (std from a thousandth of the mean to four times it; below, take a normal law)";
-        return Err(MarginalError::Parameter { name: "shape", value: shape, expected });
+        return Err(MarginalError::parameter("shape", shape, "from 0.05 to 1e6; above, take a normal law"));
     }
     Ok(Draft {
         name: "gamma",
         parameters: vec![("shape", shape), ("scale", scale)],
-        density: Box::new(Gamma { shape, mean: positive("scale", shape * scale)? }),
+        density: Box::new(Gamma { shape, mean: positive("mean", shape * scale)? }),
         family: "laguerre",
         default: Polynomials::Own,
     })
+}
+
+/// That with this mean and standard deviation: shape = (mean/std)², scale = std²/mean.
+///
+/// # Errors
+///
+/// Both must be positive, and of a shape as [`gamma`] has.
+pub(super) fn gamma_with_moments(mean: f64, std: f64) -> Result<Draft, MarginalError> {
+    let (mean, std) = (positive("mean", mean)?, positive("std", std)?);
+    let shape = (mean / std).powi(2);
+    if !SHAPES.contains(&shape) {
+        let expected = "from 0.001 to 4.47 times the mean; below, take a normal law";
+        return Err(MarginalError::parameter("std", std, expected));
+    }
+    gamma(shape, std * (std / mean))
 }
 
 impl Density for Gamma {

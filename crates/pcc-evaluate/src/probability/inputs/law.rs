@@ -2,8 +2,8 @@
 
 use super::germ::Germ;
 use super::marginal::Polynomials;
+use super::marginal_error::MarginalError;
 use super::pieces::Pieces;
-use super::uniform::MarginalError;
 use std::fmt::Debug;
 
 /// A law of an input: a monotone function x(ξ) of a standardized variable.
@@ -70,17 +70,13 @@ pub(crate) enum Transform<'a> {
 
 /// A finite number.
 pub(super) fn finite(name: &'static str, value: f64) -> Result<f64, MarginalError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(MarginalError::Parameter { name, value, expected: "a finite number" })
-    }
+    if value.is_finite() { Ok(value) } else { Err(MarginalError::parameter(name, value, "a finite number")) }
 }
 
 /// A positive finite number.
 pub(super) fn positive(name: &'static str, value: f64) -> Result<f64, MarginalError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(value),
-        false => Err(MarginalError::Parameter { name, value, expected: "a positive number" }),
+        false => Err(MarginalError::parameter(name, value, "a positive number")),
     }
 }

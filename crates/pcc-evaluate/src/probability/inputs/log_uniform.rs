@@ -2,7 +2,8 @@
 
 use super::germ::Germ;
 use super::law::{Law, Transform, positive};
-use super::uniform::{MarginalError, Uniform};
+use super::marginal_error::MarginalError;
+use super::uniform::Uniform;
 
 /// x = exp(c + hξ) between two positive bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]

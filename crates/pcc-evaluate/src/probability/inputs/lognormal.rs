@@ -4,9 +4,9 @@ use super::density::{Density, Place};
 use super::germ::Germ;
 use super::law::{Law, Transform, positive};
 use super::marginal::Polynomials;
+use super::marginal_error::MarginalError;
 use super::normal::LEAST_SPREAD;
 use super::shaped::Draft;
-use super::uniform::MarginalError;
 
 /// The law of a variable whose logarithm is normal: x = exp(μ + σξ).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,12 +30,14 @@ impl LogNormal {
     /// Both must be positive, the standard deviation not lost beside the mean.
     pub fn new(mean: f64, std: f64, chosen: Option<Polynomials>) -> Result<Self, MarginalError> {
         let (mean, std) = (positive("mean", mean)?, positive("std", std)?);
-        let variance = (std / mean).powi(2).ln_1p();
-        let log_std = positive("std", variance.sqrt())?;
         if std < LEAST_SPREAD * mean {
-            let expected = "large enough beside the mean";
-            return Err(MarginalError::Parameter { name: "std", value: std, expected });
+            return Err(MarginalError::parameter("std", std, "large enough beside the mean"));
         }
+        let variance = (std / mean).powi(2).ln_1p();
+        if !variance.is_finite() {
+            return Err(MarginalError::parameter("std", std, "less beside the mean"));
+        }
+        let log_std = variance.sqrt();
         Ok(Self { mean, std, log_mean: mean.ln() - 0.5 * variance, log_std, chosen })
     }
 

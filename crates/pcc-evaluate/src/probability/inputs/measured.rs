@@ -7,10 +7,10 @@
 
 use super::density::{Density, Place};
 use super::law::Source;
-use super::levels::{Levels, MOST_LEVELS, gathered};
+use super::levels::{MOST_LEVELS, gathered, of_levels};
 use super::marginal::{Marginal, Polynomials};
+use super::marginal_error::MarginalError;
 use super::shaped::Draft;
-use super::uniform::MarginalError;
 
 /// Fewer measured values say next to nothing of their law.
 pub const LEAST_VALUES: usize = 10;
@@ -77,7 +77,7 @@ impl Marginal {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         if let Some(&value) = sorted.iter().find(|value| !value.is_finite()) {
-            return Err(MarginalError::Parameter { name: "a value", value, expected: "a finite number" });
+            return Err(MarginalError::parameter("a value", value, "a finite number"));
         }
         let [least, largest] = [sorted[0], sorted[sorted.len() - 1]];
         if least == largest {
@@ -102,7 +102,7 @@ impl Marginal {
             if levels.len() > MOST_LEVELS {
                 return Err(MarginalError::Levels { found: levels.len(), most: MOST_LEVELS });
             }
-            return Ok(Self::of(Levels::new("data", parameters, &levels, &shares)?.measured_in(source)));
+            return Ok(Self::of(of_levels("data", parameters, &levels, &shares)?.measured_in(source)));
         }
         parameters.extend(lower.map(|lower| ("lower", lower)));
         parameters.extend(upper.map(|upper| ("upper", upper)));

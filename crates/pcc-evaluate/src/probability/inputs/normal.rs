@@ -4,9 +4,9 @@ use super::density::{Density, Place};
 use super::germ::Germ;
 use super::law::{Law, Transform, finite, positive};
 use super::marginal::Polynomials;
+use super::marginal_error::MarginalError;
 use super::normal_quantile::distribution;
 use super::shaped::Draft;
-use super::uniform::MarginalError;
 
 /// A standard deviation below this share of the mean cannot be told from none.
 pub(super) const LEAST_SPREAD: f64 = 1e3 * f64::EPSILON;
@@ -27,7 +27,7 @@ impl Normal {
     pub fn new(mean: f64, std: f64) -> Result<Self, MarginalError> {
         let (mean, std) = (finite("mean", mean)?, positive("std", std)?);
         match std < LEAST_SPREAD * mean.abs() {
-            true => Err(MarginalError::Parameter { name: "std", value: std, expected: "large enough beside the mean" }),
+            true => Err(MarginalError::parameter("std", std, "large enough beside the mean")),
             false => Ok(Self { mean, std }),
         }
     }

@@ -1,16 +1,18 @@
 //! Laws by name and parameters, as study files and surrogate files give them.
 
-use super::beta::beta;
+use super::beta::{beta, beta_with_moments};
 use super::extremes::{exponential, gumbel, gumbel_with_moments, weibull};
-use super::gamma::gamma;
-use super::levels::{Levels, discrete};
+use super::gamma::{gamma, gamma_with_moments};
+use super::law::{finite, positive};
+use super::levels::{self, discrete};
 use super::log_uniform::LogUniform;
 use super::lognormal::LogNormal;
 use super::marginal::{Marginal, Polynomials};
+use super::marginal_error::{MarginalError, plain};
 use super::normal::Normal;
-use super::shaped::{self, Draft, Stored};
+use super::shaped::{self, Draft, Shaped, Stored};
 use super::triangular::triangular;
-use super::uniform::{MarginalError, Uniform};
+use super::uniform::Uniform;
 
 /// Parameters of a law, with their names in study files, and the polynomials that are asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +25,7 @@ pub struct Parameters<'a> {
 enum Made {
     Finished(Marginal),
     Draft(Draft),
-    Levels(Levels),
+    Levels(Shaped),
 }
 
 type Making = Result<Made, MarginalError>;
@@ -39,8 +41,7 @@ const LAWS: [Known; 12] = [
     ("gamma", "mean and std, mean and cv, or shape and scale", |given| {
         let law = match given.exactly(["shape", "scale"]) {
             Some([shape, scale]) => gamma(shape, scale),
-            // The variance is mean · scale.
-            None => given.moments()?.and_then(|[mean, std]| gamma((mean / std).powi(2), std * (std / mean))),
+            None => given.moments()?.and_then(|[mean, std]| gamma_with_moments(mean, std)),
         };
         Some(law.map(Made::Draft))
     }),
@@ -103,14 +104,37 @@ impl<'a> Parameters<'a> {
         Self { numbers, polynomials: self.polynomials }
     }
 
+    /// What is wrong, in the words of what is given: with that before it, where it speaks of what follows from that.
+    fn explain(&self, cause: MarginalError) -> MarginalError {
+        let speaks_of: &[&str] = match &cause {
+            MarginalError::Parameter { name, .. } => &[name],
+            MarginalError::NotFinite { .. } | MarginalError::Inverted { .. } | MarginalError::Unresolved { .. } => {
+                &["lower", "upper"]
+            }
+            _ => &[],
+        };
+        // Of levels there are many.
+        let is_given = |name: &&str| self.get(name).is_some() || self.get("value").is_some();
+        if speaks_of.iter().all(is_given) {
+            return cause;
+        }
+        let given: Vec<String> =
+            self.numbers.iter().map(|(name, value)| format!("{name} = {}", plain(value))).collect();
+        MarginalError::Following { given: given.join(", "), cause: Box::new(cause) }
+    }
+
     /// Mean and standard deviation.
     fn moments(&self) -> Option<Result<[f64; 2], MarginalError>> {
         if let Some([mean, std]) = self.exactly(["mean", "std"]) {
             return Some(Ok([mean, std]));
         }
-        let [mean, cv] = self.exactly(["mean", "cv"]).or_else(|| self.exactly(["nominal", "cv"]))?;
+        let (key, [mean, cv]) =
+            ["mean", "nominal"].into_iter().find_map(|key| Some((key, self.exactly([key, "cv"])?)))?;
+        if !mean.is_finite() {
+            return Some(Err(MarginalError::parameter(key, mean, "a finite number")));
+        }
         Some(match mean == 0.0 {
-            true => Err(MarginalError::NoScatter { cv }),
+            true => Err(MarginalError::NoScatter { name: "cv", value: cv, of: key, instead: "mean and std" }),
             false => Ok([mean, cv * mean.abs()]),
         })
     }
@@ -162,7 +186,7 @@ impl Marginal {
         let given = given.clone().with_polynomials(Some(stored.polynomials));
         match made(name, &given).map_err(|error| error.to_string())? {
             (law, Made::Finished(_)) => Err(format!("a {law} law has no pieces")),
-            (_, Made::Levels(levels)) => levels.stored(stored).map(Self::of).map_err(str::to_owned),
+            (_, Made::Levels(levels)) => levels.as_stored(stored).map(Self::of).map_err(str::to_owned),
             (_, Made::Draft(draft)) => draft.stored(stored).map_err(str::to_owned),
         }
     }
@@ -173,8 +197,8 @@ fn made(name: &str, given: &Parameters<'_>) -> Result<(&'static str, Made), Marg
         let known = Marginal::names().collect::<Vec<_>>().join(", ");
         return Err(MarginalError::Unknown { found: name.to_owned(), known });
     };
-    let made = make(given).unwrap_or(Err(MarginalError::Form { law, expected }))?;
-    Ok((law, made))
+    let made = make(given).unwrap_or(Err(MarginalError::Form { law, expected }));
+    Ok((law, made.map_err(|cause| given.explain(cause))?))
 }
 
 /// A law of measured values, which are not in the file.
@@ -190,17 +214,29 @@ fn of_data(given: &Parameters<'_>, stored: Stored) -> Result<Marginal, &'static 
     let [lower, upper] = [("lower", f64::NEG_INFINITY), ("upper", f64::INFINITY)]
         .map(|(name, unbounded)| given.get(name).unwrap_or(unbounded));
     match value("bandwidth") == 0.0 {
-        true => Levels::of_file("data", parameters, [value("least"), value("largest")], stored).map(Marginal::of),
+        true => levels::of_file("data", parameters, [value("least"), value("largest")], stored).map(Marginal::of),
         false => shaped::of_file("data", parameters, [lower, upper], "own", stored),
     }
 }
 
 fn uniform(given: &Parameters<'_>) -> Option<Making> {
-    let [lower, upper] = match given.exactly(["nominal", "spread"]) {
-        Some([nominal, spread]) => [nominal * (1.0 - spread), nominal * (1.0 + spread)],
-        None => given.exactly(["lower", "upper"])?,
+    let bounds = match given.exactly(["nominal", "spread"]) {
+        Some([nominal, spread]) => around(nominal, spread),
+        None => Ok(given.exactly(["lower", "upper"])?),
     };
-    Some(Uniform::new(lower, upper).map(Marginal::Uniform).map(Made::Finished))
+    let law = bounds.and_then(|[lower, upper]| Uniform::new(lower, upper));
+    Some(law.map(Marginal::Uniform).map(Made::Finished))
+}
+
+/// The interval of a spread, also of what is negative.
+fn around(nominal: f64, spread: f64) -> Result<[f64; 2], MarginalError> {
+    let nominal = finite("nominal", nominal)?;
+    if nominal == 0.0 {
+        let instead = "lower and upper";
+        return Err(MarginalError::NoScatter { name: "spread", value: spread, of: "nominal", instead });
+    }
+    let [nearer, farther] = [nominal * (1.0 - spread), nominal * (1.0 + spread)];
+    Ok([nearer.min(farther), nearer.max(farther)])
 }
 
 fn normal(given: &Parameters<'_>) -> Option<Making> {
@@ -215,7 +251,9 @@ fn normal(given: &Parameters<'_>) -> Option<Making> {
 fn lognormal(given: &Parameters<'_>) -> Option<Making> {
     let moments = match given.exactly(["median", "cv"]) {
         // The mean of a lognormal variable is median √(1 + cv²).
-        Some([median, cv]) => Ok([median * cv.hypot(1.0), cv * median * cv.hypot(1.0)]),
+        Some([median, cv]) => {
+            positive("median", median).map(|median| [median * cv.hypot(1.0), cv * median * cv.hypot(1.0)])
+        }
         None => given.moments()?,
     };
     let law = moments.and_then(|[mean, std]| LogNormal::new(mean, std, given.polynomials));
@@ -233,12 +271,7 @@ fn of_beta(given: &Parameters<'_>) -> Option<Making> {
     let shapes = given.without(&["lower", "upper"]);
     let law = match shapes.exactly(["alpha", "beta"]) {
         Some([alpha, beta_]) => beta(alpha, beta_, [lower, upper]),
-        None => shapes.moments()?.and_then(|[mean, std]| {
-            // α + β = m (1 − m)/s² − 1, of mean and standard deviation in units of the interval.
-            let (mean, std) = ((mean - lower) / (upper - lower), std / (upper - lower));
-            let sum = mean * (1.0 - mean) / (std * std) - 1.0;
-            beta(mean * sum, (1.0 - mean) * sum, [lower, upper])
-        }),
+        None => shapes.moments()?.and_then(|[mean, std]| beta_with_moments(mean, std, [lower, upper])),
     };
     Some(law.map(Made::Draft))
 }
@@ -297,12 +330,62 @@ mod tests {
         };
         assert!(refusal("normal", &[("mean", 1.0)]).contains("mean and std"));
         assert!(refusal("normal", &[("mean", 1.0), ("std", 0.0)]).contains("std is 0"));
-        assert!(refusal("normal", &[("mean", 0.0), ("cv", 0.1)]).contains("mean is 0"));
+        assert!(refusal("normal", &[("mean", 0.0), ("cv", 0.1)]).contains("share of mean, which is 0"));
         assert!(refusal("normal", &[("mean", 0.0), ("std", 1.0), ("lower", 9.0)]).contains("of the probability"));
         assert!(refusal("normal", &[("mean", 0.0), ("std", 1.0), ("lower", 1.0), ("upper", 0.0)]).contains("below"));
         assert!(refusal("lognormal", &[("mean", -1.0), ("std", 0.5)]).contains("mean is -1"));
         assert!(refusal("log-uniform", &[("lower", 0.0), ("upper", 1.0)]).contains("lower is 0"));
         assert!(refusal("weibull", &[("shape", -1.0), ("scale", 1.0)]).contains("shape is -1"));
         assert!(refusal("cauchy", &[]).contains("uniform, normal, lognormal"));
+    }
+
+    /// The keys that are given, with their values; those that follow from them only after these.
+    #[test]
+    fn refusals_speak_of_the_keys_that_are_given() {
+        for (name, given, expected) in [
+            ("gamma", &[("mean", 1.0), ("std", 10.0)][..], "std is 10, but must be from 0.001 to 4.47 times the mean"),
+            ("gamma", &[("mean", 1.0), ("cv", 10.0)], "with mean = 1, cv = 10, std is 10, but must be from 0.001"),
+            ("gamma", &[("mean", -1.0), ("std", 1.0)], "mean is -1, but must be a positive number"),
+            ("gamma", &[("shape", 1e5), ("scale", 1e305)], "with shape = 100000, scale = 1e305, mean is inf"),
+            ("gamma", &[("nominal", f64::NAN), ("cv", 0.1)], "nominal is NaN, but must be a finite number"),
+            ("beta", &[("mean", 2.0), ("std", 0.1)], "mean is 2, but must be between lower (0) and upper (1)"),
+            ("beta", &[("mean", 0.5), ("std", 0.6)], "std is 0.6, but must be from 0.000354 to 0.477 with this mean"),
+            ("beta", &[("mean", 0.5), ("cv", 1.2)], "with mean = 0.5, cv = 1.2, std is 0.6, but must be from"),
+            ("lognormal", &[("median", -2.0), ("cv", 0.3)], "median is -2, but must be a positive number"),
+            ("lognormal", &[("mean", 1.0), ("std", 1e200)], "std is 1e200, but must be less beside the mean"),
+            ("lognormal", &[("median", 1.0), ("cv", 1e-20)], "with median = 1, cv = 1e-20, std is 1e-20, but must be"),
+            ("normal", &[("nominal", 3.0), ("cv", 1e-20)], "with nominal = 3, cv = 1e-20, std is "),
+            (
+                "normal",
+                &[("nominal", 0.0), ("cv", 0.1)],
+                "cv = 0.1 is a share of nominal, which is 0; give mean and std",
+            ),
+            ("gumbel", &[("mean", 1e308), ("std", 1e308)], "with mean = 1e308, std = 1e308,"),
+            (
+                "uniform",
+                &[("nominal", 0.0), ("spread", 0.1)],
+                "spread = 0.1 is a share of nominal, which is 0; give lower",
+            ),
+            ("uniform", &[("nominal", f64::INFINITY), ("spread", 0.1)], "nominal is inf"),
+            ("uniform", &[("nominal", 1.0), ("spread", 1e-16)], "with nominal = 1, spread = 1e-16,"),
+        ] {
+            let found = Marginal::named(name, &Parameters::of(given.iter().copied()));
+            let found = found.map_err(|error| error.to_string());
+            assert!(found.as_ref().is_err_and(|message| message.starts_with(expected)), "{name} {given:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_spread_of_what_is_negative_is_an_interval() {
+        let law = Marginal::named("uniform", &Parameters::of([("nominal", -2.0), ("spread", 0.1)])).unwrap();
+        assert_eq!(law.support(), [-2.2, -1.8]);
+    }
+
+    #[test]
+    fn what_is_not_resolved_is_said_of_parameters_or_of_values() {
+        let shape = |law| MarginalError::Shape { law }.to_string();
+        assert!(shape("gamma").contains("a gamma law with these parameters") && shape("beta").contains("extremes"));
+        assert!(shape("data").contains("these values") && !shape("data").contains("parameters"));
+        assert!(shape("discrete").contains("values and") || shape("discrete").contains("their weights"));
     }
 }

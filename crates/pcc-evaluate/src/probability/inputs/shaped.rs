@@ -4,10 +4,10 @@ use super::density::{Density, Integrated, Place};
 use super::germ::Germ;
 use super::law::{Law, Source, Transform};
 use super::marginal::{Marginal, Polynomials};
+use super::marginal_error::MarginalError;
 use super::normal_quantile::distribution;
 use super::own_variable::OwnVariable;
 use super::pieces::{Pieces, TOLERANCE};
-use super::uniform::MarginalError;
 use crate::polynomials::{OwnPolynomials, Recurrence};
 use std::sync::Arc;
 
@@ -37,9 +37,10 @@ pub(crate) struct Stored {
     pub recurrence: Recurrence,
 }
 
-/// x = origin + scale q(z), q being its quantile as a function of the normal score.
+/// x = origin + scale q(z), q being its quantile as a function of the normal score: in steps, where x takes single
+/// values.
 #[derive(Debug)]
-struct Shaped {
+pub(super) struct Shaped {
     name: &'static str,
     parameters: Vec<(&'static str, f64)>,
     support: [f64; 2],
@@ -50,6 +51,7 @@ struct Shaped {
     germ: Germ,
     chosen: Option<Polynomials>,
     source: Option<Source>,
+    is_discrete: bool,
 }
 
 /// The largest |F(q(z)) − Φ(z)| of what is stored, but for the rounding of q.
@@ -71,7 +73,7 @@ impl Draft {
     ///
     /// As [`Draft::law`].
     pub fn measured(self, chosen: Option<Polynomials>, source: Option<Source>) -> Result<Marginal, MarginalError> {
-        Ok(Marginal::of(Shaped { source, ..self.shaped(chosen)? }))
+        Ok(Marginal::of(self.shaped(chosen)?.measured_in(source)))
     }
 
     fn shaped(self, chosen: Option<Polynomials>) -> Result<Shaped, MarginalError> {
@@ -125,21 +127,16 @@ pub(super) fn of_file(
     parameters: Vec<(&'static str, f64)>,
     support: [f64; 2],
     family: &'static str,
-    Stored { map: [origin, scale], quantile, polynomials, recurrence }: Stored,
+    stored: Stored,
 ) -> Result<Marginal, &'static str> {
-    if !(origin.is_finite() && scale.is_normal() && scale > 0.0) {
-        return Err("its map has no finite origin and positive scale");
-    }
-    let own = OwnPolynomials::stored(family, recurrence);
-    if polynomials == Polynomials::Own && !are_polynomials_of(&own, &quantile) {
-        return Err("its recurrence is not that of its law");
-    }
-    let law = Shaped::new(name, parameters, support, [origin, scale], quantile, polynomials, own);
-    Ok(Marginal::of(Shaped { chosen: Some(polynomials), ..law }))
+    let chosen = Some(stored.polynomials);
+    let law = Shaped::of_file(name, parameters, support, family, stored)?;
+    Ok(Marginal::of(Shaped { chosen, ..law }))
 }
 
 impl Shaped {
-    fn new(
+    /// The law of this map, with the polynomials of this basis.
+    pub fn new(
         name: &'static str,
         parameters: Vec<(&'static str, f64)>,
         support: [f64; 2],
@@ -157,7 +154,39 @@ impl Shaped {
                 is_bounded: support.map(f64::is_finite),
             })),
         };
-        Self { name, parameters, support, origin, scale, quantile, germ, chosen: None, source: None }
+        let is_discrete = quantile.are_steps();
+        Self { name, parameters, support, origin, scale, quantile, germ, chosen: None, source: None, is_discrete }
+    }
+
+    /// The law of a map that a file has; a sentence if there is none.
+    pub fn of_file(
+        name: &'static str,
+        parameters: Vec<(&'static str, f64)>,
+        support: [f64; 2],
+        family: &'static str,
+        Stored { map, quantile, polynomials, recurrence }: Stored,
+    ) -> Result<Self, &'static str> {
+        if !(map[0].is_finite() && map[1].is_normal() && map[1] > 0.0) {
+            return Err("its map has no finite origin and positive scale");
+        }
+        let own = OwnPolynomials::stored(family, recurrence);
+        if polynomials == Polynomials::Own && !are_polynomials_of(&own, &quantile) {
+            return Err("its recurrence is not that of its law");
+        }
+        Ok(Self::new(name, parameters, support, map, quantile, polynomials, own))
+    }
+
+    /// The law as a file has it, of which all steps are known; a sentence if that is not its map.
+    pub fn as_stored(self, stored: Stored) -> Result<Self, &'static str> {
+        if stored.map != [self.origin, self.scale] || stored.quantile != *self.quantile {
+            return Err("its steps are not those of its law");
+        }
+        Self::of_file(self.name, self.parameters, self.support, "own", stored)
+    }
+
+    /// The same, whose values were read there.
+    pub fn measured_in(self, source: Option<Source>) -> Self {
+        Self { source, ..self }
     }
 
     /// Whether ξ is the normal score.
@@ -199,7 +228,7 @@ fn is_quantile_of(density: &dyn Density, [origin, scale]: [f64; 2], quantile: &P
 }
 
 /// Whether the first coefficients are those of the variable q(z), and the others can be.
-pub(super) fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
+fn are_polynomials_of(own: &OwnPolynomials, quantile: &Pieces) -> bool {
     /// Of values in narrow heaps far apart coefficients follow from small differences.
     const TOLERANCE: f64 = 1e-4;
     const CHECKED: usize = 3;
@@ -250,6 +279,10 @@ impl Law for Shaped {
 
     fn transform(&self) -> Transform<'_> {
         Transform::Pieces { origin: self.origin, scale: self.scale, quantile: &self.quantile }
+    }
+
+    fn is_discrete(&self) -> bool {
+        self.is_discrete
     }
 
     fn source(&self) -> Option<&Source> {

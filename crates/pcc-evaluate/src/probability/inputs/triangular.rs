@@ -3,8 +3,9 @@
 use super::density::{Density, Place};
 use super::law::finite;
 use super::marginal::Polynomials;
+use super::marginal_error::MarginalError;
 use super::shaped::Draft;
-use super::uniform::{MarginalError, Uniform};
+use super::uniform::Uniform;
 
 /// A density that rises along a line up to its mode, and falls along another.
 #[derive(Debug)]
@@ -21,7 +22,7 @@ struct Triangular {
 pub(super) fn triangular(lower: f64, mode: f64, upper: f64) -> Result<Draft, MarginalError> {
     let (interval, mode) = (Uniform::new(lower, upper)?, finite("mode", mode)?);
     if !(lower..=upper).contains(&mode) {
-        return Err(MarginalError::Parameter { name: "mode", value: mode, expected: "between lower and upper" });
+        return Err(MarginalError::parameter("mode", mode, "between lower and upper"));
     }
     Ok(Draft {
         name: "triangular",
