@@ -286,15 +286,11 @@ impl CriticalReport {
     pub fn new(input: &Input, found: &CriticalValues) -> Self {
         let share = |part: u64| part as f64 / found.samples as f64;
         let quantile = |level| CriticalQuantile { level, value: found.quantile(level) };
-        let reach = input.marginal.germ().reach();
-        let [from, to] = match reach < 1.0 {
-            true => [-reach, reach].map(|centred| input.marginal.at_centred_probability(centred)),
-            false => input.marginal.support(),
-        };
+        let [from, to] = found.looked_for();
         Self {
             from,
             to,
-            tail: 0.5 * (1.0 - reach),
+            tail: found.tail(),
             input: input.name.clone(),
             head: input.name_with_unit(),
             samples: found.samples,

@@ -174,6 +174,9 @@ fn what_cannot_be_said_of_dependent_inputs_is_refused_with_the_reason() {
             && critical.contains("--sweep x=FROM..TO:POINTS"),
         "{critical}"
     );
+    assert!(critical.contains("fix the others (--where y=VALUE)"), "{critical}");
+    let confined = refused(&["--critical", "x", "--where", "y=0.1..0.3"]);
+    assert!(confined.contains("y and x depend on each other"), "{confined}");
     let intervals = refused(&["--where", "x=0.9..1.2", "--where", "y=0.0..0.3"]);
     assert!(intervals.contains("x and y depend on each other, and only one of them"), "{intervals}");
     let report = json(folder.path(), &["eval", "built.pcc", "-n", "20000", "--critical", "z"]);
@@ -181,6 +184,29 @@ fn what_cannot_be_said_of_dependent_inputs_is_refused_with_the_reason() {
     let quantiles = report["critical"]["quantiles"].as_array().unwrap();
     let median = quantiles.iter().find(|quantile| quantile["level"] == 0.5).unwrap();
     assert!((number(median, "/value") - 0.3).abs() < 0.015, "{quantiles:?}");
+}
+
+/// With y fixed, x is normal with the mean 1 + 0.9 (y − 0.2) and the standard deviation 0.24, and the critical value is
+/// 1.5 − y − z.
+#[test]
+fn critical_values_are_found_where_all_that_an_input_depends_on_is_fixed() {
+    let folder = built_from(OSCILLATOR);
+    for (y, never, from_start) in [(0.5, 0.0, 0.0), (0.1, 0.0, 0.0), (0.9, 0.0, 1.0)] {
+        let condition = format!("y={y:?}");
+        let eval = ["eval", "built.pcc", "-n", "20000", "--critical", "x", "--where", &condition];
+        let report = json(folder.path(), &eval);
+        let mean = 0.9f64.mul_add(y - 0.2, 1.0);
+        let ends = ["from", "to"].map(|end| number(&report, &format!("/critical/{end}")));
+        let expected = [-1.0, 1.0].map(|side| 0.24f64.mul_add(side * 3.668_329_285_121, mean));
+        assert!(ends.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{ends:?} {expected:?}");
+        assert!((number(&report, "/critical/never") - never).abs() < 1e-3, "{report}");
+        assert!((number(&report, "/critical/unstable_from_start") - from_start).abs() < 0.01, "{report}");
+        if from_start == 0.0 {
+            // Of 20 000 values of z with a standard deviation of 0.1.
+            let critical = number(&report, "/critical/mean");
+            assert!((critical - (1.5 - y - 0.1)).abs() < 4.5 * 0.1 / 20_000f64.sqrt(), "{y}: {critical}");
+        }
+    }
 }
 
 /// Ranks from 0, for numbers that are all different.

@@ -145,9 +145,10 @@ fn as_typed(error: SessionError, surrogate: &str) -> anyhow::Error {
             "--critical {input} --where {input}=…: the critical value is looked for in all of the domain; leave out one"
         ),
         SessionError::CriticalOfDependent { input, others } => anyhow!(
-            "--critical {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; with --sweep \
-             {input}=FROM..TO:POINTS the others follow",
-            others.join(", ")
+            "--critical {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; fix the \
+             others ({}), or with --sweep {input}=FROM..TO:POINTS they follow",
+            others.join(", "),
+            others.iter().map(|other| format!("--where {other}=VALUE")).collect::<Vec<_>>().join(" ")
         ),
         SessionError::CriticalSampler => {
             anyhow!("--critical: critical values are found from random samples; leave out --sampler")

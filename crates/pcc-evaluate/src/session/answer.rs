@@ -72,7 +72,7 @@ impl<'s> Session<'s> {
         instructions: InstructionSet,
     ) -> Result<Self, SessionError> {
         let survey = Survey::new(surrogate, question, instructions)?;
-        let critical = critical.map(|name| critical_input(surrogate, question, name)).transpose()?;
+        let critical = critical.map(|name| critical_input(surrogate, &survey, question, name)).transpose()?;
         Ok(Self { surrogate, question, survey, critical })
     }
 
@@ -173,7 +173,12 @@ impl<'s> Session<'s> {
 }
 
 /// The number of the input whose critical values are looked for: at random values of the others, in all of its domain.
-pub(super) fn critical_input(surrogate: &Surrogate, question: &Question, name: &str) -> Result<usize, SessionError> {
+pub(super) fn critical_input(
+    surrogate: &Surrogate,
+    survey: &Survey<'_>,
+    question: &Question,
+    name: &str,
+) -> Result<usize, SessionError> {
     let input = name.to_owned();
     let Some(position) = surrogate.inputs.names().position(|known| known == name) else {
         return Err(SessionError::NoSuchInput { input, known: surrogate.inputs.names().map(str::to_owned).collect() });
@@ -181,16 +186,18 @@ pub(super) fn critical_input(surrogate: &Surrogate, question: &Question, name: &
     if question.conditions.iter().any(|condition| condition.input == name) {
         return Err(SessionError::ConfinedInput { input });
     }
-    let of_block = |&other: &usize| (other != position).then(|| surrogate.inputs.inputs()[other].name.clone());
-    let others: Vec<String> = surrogate.inputs.correlated_with(position).iter().filter_map(of_block).collect();
-    if !others.is_empty() {
-        return Err(SessionError::CriticalOfDependent { input, others });
-    }
     if question.sampler != Sampler::MonteCarlo {
         return Err(SessionError::CriticalSampler);
     }
     if !question.sweeps.is_empty() {
         return Err(SessionError::CriticalOfSweep);
+    }
+    let region = survey.regions().at(0);
+    if region.score_alone(&surrogate.inputs, position).is_none() {
+        let is_free = |other: &&usize| **other != position && !region.is_fixed(**other);
+        let others = surrogate.inputs.correlated_with(position).iter().filter(is_free);
+        let others = others.map(|&other| surrogate.inputs.inputs()[other].name.clone()).collect();
+        return Err(SessionError::CriticalOfDependent { input, others });
     }
     Ok(position)
 }

@@ -30,10 +30,11 @@ pub enum SessionError {
         /// The input.
         input: String,
     },
-    /// Critical values of an input that others depend on.
+    /// Critical values of an input that others depend on which are not fixed.
     #[error(
-        "critical value of {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; sweep it \
-         instead, and the others follow", others.join(", ")
+        "critical value of {input}: {} and {input} depend on each other, so that {input} cannot be varied alone; \
+         fix the others, or sweep {input}, and they follow",
+        others.join(", ")
     )]
     CriticalOfDependent {
         /// The input.

@@ -4,8 +4,9 @@
 //! which it is unstable, max Re λ > 0. Its distribution says where a limit for this input has to lie so that, say, 99 %
 //! of all systems stay stable below it.
 //!
-//! The domain is the interval of an input with bounds; of others what lies between two quantiles far out. Its width is
-//! measured in the input where that is uniform, else in normal scores, so that what happens in a tail is told apart.
+//! The domain is the interval of an input with bounds; of others what lies between two quantiles far out, of the law
+//! that they have where the inputs that they depend on are fixed. Its width is measured in the input where that is
+//! uniform, else in normal scores, so that what happens in a tail is told apart.
 //!
 //! 1. max Re λ at the 65 ends of 64 equal cells of the input's domain, from below, until one is unstable. If it is the
 //!    first, the critical value is the smallest that is looked at; if there is none, there is no critical value.
@@ -24,6 +25,7 @@
 
 use super::bracket::{Bracket, End};
 use super::crossings::{Crossing, CrossingKey, Crossings};
+use super::domain::Domain;
 use crate::components::{Label, Top};
 use crate::evaluation::error::EvalError;
 use crate::evaluation::kernel::chunks::{CHUNK, in_chunks};
@@ -31,7 +33,6 @@ use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::Evaluator;
 use crate::evaluation::questions::region::Region;
 use crate::foundation::Observer;
-use crate::probability::inputs::Marginal;
 use crate::probability::random::{Purpose, Stream};
 use crate::probability::statistics::Moments;
 use crate::surrogate::Surrogate;
@@ -55,7 +56,7 @@ pub struct CriticalValues {
     pub never: u64,
     /// Samples that are unstable at the smallest value already: it is their critical value.
     pub unstable_from_start: u64,
-    domain: Marginal,
+    domain: Domain,
     /// Critical values above the smallest, per bin.
     counts: Vec<u64>,
     /// All critical values, in the input's own unit.
@@ -66,7 +67,7 @@ pub struct CriticalValues {
 }
 
 impl CriticalValues {
-    fn new(samples: u64, domain: Marginal, labels: Vec<Label>) -> Self {
+    fn new(samples: u64, domain: Domain, labels: Vec<Label>) -> Self {
         Self {
             samples,
             never: 0,
@@ -77,6 +78,16 @@ impl CriticalValues {
             crossings: Crossings::default(),
             labels,
         }
+    }
+
+    /// Between which values they were looked for, in the input's own unit.
+    pub fn looked_for(&self) -> [f64; 2] {
+        self.domain.ends()
+    }
+
+    /// The probability of values beyond either of these, of the law that fixed inputs leave the input.
+    pub fn tail(&self) -> f64 {
+        self.domain.tail()
     }
 
     /// Every change of stability along the input, in order, with the mode and the kind of instability on its unstable
@@ -137,7 +148,7 @@ pub(super) fn bin_of(place: f64) -> usize {
 
 /// The value that as many values as `rank` do not exceed, interpolated linearly inside its bin; `None` if there are
 /// fewer.
-pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, values: &Moments, domain: &Marginal) -> Option<f64> {
+pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, values: &Moments, domain: &Domain) -> Option<f64> {
     let mut below = 0.0;
     for (bin, &count) in counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
         let count = count as f64;
@@ -159,7 +170,7 @@ pub(super) fn quantile_in_bins(counts: &[u64], rank: f64, values: &Moments, doma
 /// # Errors
 ///
 /// [`EvalError`]; [`EvalError::NoSuchInput`] if there are not that many inputs, [`EvalError::Dependent`] if others
-/// depend on it.
+/// depend on it that are not fixed.
 ///
 /// # Examples
 ///
@@ -199,17 +210,19 @@ pub fn critical_values_in(
 ) -> Result<CriticalValues, EvalError> {
     let inputs = surrogate.inputs.inputs();
     let chosen = inputs.get(input).ok_or(EvalError::NoSuchInput { input, inputs: inputs.len() })?;
-    if !surrogate.inputs.correlated_with(input).is_empty() {
-        return Err(EvalError::Dependent { input: chosen.name.clone() });
-    }
-    let domain = chosen.marginal.clone();
+    let alone = region.score_alone(&surrogate.inputs, input);
+    let of_scores = alone.ok_or_else(|| EvalError::Dependent { input: chosen.name.clone() })?;
+    let domain = &Domain::new(chosen.marginal.clone(), of_scores);
     let plan = Plan::new(surrogate);
-    let mut values = CriticalValues::new(samples, domain, surrogate.labels());
+    let mut values = CriticalValues::new(samples, domain.clone(), surrogate.labels());
     in_chunks(
         samples,
         CHUNK,
         observer,
-        || Search { surrogate, region, evaluator: Evaluator::new(surrogate, &plan), input, seed, points: Vec::new() },
+        || {
+            let evaluator = Evaluator::new(surrogate, &plan);
+            Search { surrogate, region, domain, evaluator, input, seed, points: Vec::new() }
+        },
         |search, range| search.run(range, observer),
         |part| values.add(&part),
     )?;
@@ -285,6 +298,7 @@ impl Changing {
 struct Search<'a> {
     surrogate: &'a Surrogate,
     region: &'a Region,
+    domain: &'a Domain,
     evaluator: Evaluator<'a>,
     input: usize,
     seed: u64,
@@ -361,10 +375,10 @@ impl Search<'_> {
     /// What decides at samples of the chunk with the input's standardized value set to that of the trial.
     fn evaluate(&mut self, trials: &[(usize, f64)]) -> Result<Vec<Point>, EvalError> {
         let (points, input) = (&self.points, self.input);
-        let germ = self.surrogate.inputs.inputs()[input].marginal.germ();
+        let domain = self.domain;
         let set_point = |(sample, xi): (usize, f64), point: &mut [f64]| {
             point.copy_from_slice(&points[sample * point.len()..(sample + 1) * point.len()]);
-            point[input] = germ.along(xi);
+            point[input] = domain.standardized(xi);
         };
         let mut found = Vec::with_capacity(trials.len());
         self.evaluator.deciding(trials.len(), |number, point| set_point(trials[number], point), &mut found);

@@ -4,8 +4,8 @@
 //! down, the second where capsize, a real eigenvalue, begins to grow.
 
 use super::critical::{BINS, bin_of, quantile_in_bins};
+use super::domain::Domain;
 use crate::components::{Label, Verdict};
-use crate::probability::inputs::Marginal;
 use crate::probability::statistics::Moments;
 use std::collections::BTreeMap;
 
@@ -56,11 +56,11 @@ pub struct Crossing {
     /// Smallest and largest.
     pub range: [f64; 2],
     values: Values,
-    domain: Marginal,
+    domain: Domain,
 }
 
 impl Crossings {
-    pub(super) fn add(&mut self, crossings: &[(CrossingKey, f64)], domain: &Marginal) {
+    pub(super) fn add(&mut self, crossings: &[(CrossingKey, f64)], domain: &Domain) {
         let mut sorted: Vec<&(CrossingKey, f64)> =
             crossings.iter().filter(|(key, _)| key.order <= MOST_CROSSINGS).collect();
         sorted.sort_by_key(|(key, _)| *key);
@@ -78,7 +78,7 @@ impl Crossings {
     }
 
     /// All of them, in the order of crossings, of equal ones the most frequent first.
-    pub(super) fn list(&self, labels: &[Label], domain: &Marginal) -> Vec<Crossing> {
+    pub(super) fn list(&self, labels: &[Label], domain: &Domain) -> Vec<Crossing> {
         let crossing = |(key, values): (&CrossingKey, &Values)| Crossing {
             order: key.order,
             loses: key.loses,

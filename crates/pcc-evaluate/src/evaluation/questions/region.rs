@@ -62,6 +62,15 @@ impl Region {
         self.correlated.interval().is_none()
     }
 
+    /// Mean and standard deviation of the normal score of an input that is not confined, if it is independent of all
+    /// others here: 0 and 1, unless it depends on inputs that are fixed.
+    pub(crate) fn score_alone(&self, inputs: &InputSpace, input: usize) -> Option<[f64; 2]> {
+        match inputs.correlated_with(input).is_empty() {
+            true => Some([0.0, 1.0]),
+            false => self.correlated.alone(input),
+        }
+    }
+
     /// How inputs that depend on others are drawn.
     pub(crate) fn correlated(&self) -> &Correlated {
         &self.correlated

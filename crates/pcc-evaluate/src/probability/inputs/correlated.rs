@@ -163,6 +163,24 @@ impl Correlated {
         self.steps.iter().find(|step| step.interval.is_some()).map(|step| step.input)
     }
 
+    /// Mean and standard deviation of the normal score of an input that is not fixed, where fixed inputs leave it
+    /// independent of all others.
+    pub fn alone(&self, input: usize) -> Option<[f64; 2]> {
+        /// Covariances of independent scores, relative to their standard deviations.
+        const ROUNDING: f64 = 1e-12;
+        let step = self.steps.iter().find(|step| step.input == input)?;
+        let deviation = |of: &Step| of.weights.iter().map(|(_, weight)| weight * weight).sum::<f64>().sqrt();
+        let covariance = |other: &Step| -> f64 {
+            let same =
+                |number: usize| other.weights.iter().find(|(input, _)| *input == number).map_or(0.0, |(_, w)| *w);
+            step.weights.iter().map(|(number, weight)| weight * same(*number)).sum()
+        };
+        let own = deviation(step);
+        let is_independent =
+            |other: &Step| other.input == input || covariance(other).abs() <= ROUNDING * own * deviation(other);
+        self.steps.iter().all(is_independent).then_some([step.mean, own])
+    }
+
     /// The normal scores of fixed inputs that others depend on.
     pub fn fixed(&self) -> &[(usize, f64)] {
         &self.fixed
@@ -337,6 +355,27 @@ mod tests {
         assert!((covariance[0][2] - slope * variance_0).abs() < 1e-3, "{covariance:?}");
         let left = 0.75 - 0.25 / 0.64;
         assert!((covariance[2][2] - (slope * slope * variance_0 + of_grid() * left)).abs() < 1e-4, "{covariance:?}");
+    }
+
+    /// Of a chain a value in the middle leaves nothing between its ends; two causes depend where their effect is known.
+    #[test]
+    fn inputs_are_alone_where_what_is_fixed_leaves_them_so() {
+        let alone = |pairs: &[(usize, usize, f64)], fixed: &[usize], input: usize| {
+            let mut confined = [Confinement::NONE; 3];
+            fixed.iter().for_each(|&at| confined[at] = fixed_at(1.2));
+            let copula = GaussianCopula::new(3, pairs.iter().copied()).unwrap();
+            Correlated::new(&copula, &inputs()[..3], &confined).unwrap().alone(input)
+        };
+        let (chain, effect) = ([(0, 1, 0.5), (1, 2, 0.5), (0, 2, 0.25)], [(0, 1, 0.5), (1, 2, 0.5)]);
+        let close = |found: Option<[f64; 2]>, expected: [f64; 2]| {
+            found.is_some_and(|found| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14))
+        };
+        assert!(close(alone(&chain, &[1], 0), [0.6, 0.75f64.sqrt()]));
+        assert_eq!((alone(&chain, &[], 0), alone(&chain, &[2], 0)), (None, None));
+        assert_eq!((alone(&effect, &[], 0), alone(&effect, &[1], 0), alone(&effect, &[1], 1)), (None, None, None));
+        // By the inverse of the correlations of the fixed ones: 0.5/(1 − 0.25) (1.2 − 0.5 · 0), and so on.
+        let both = 0.5 * 1.2 / 0.75 - 0.5 * 0.5 * 1.2 / 0.75;
+        assert!(close(alone(&effect, &[1, 2], 0), [both, (1.0f64 - 0.25 / 0.75).sqrt()]));
     }
 
     #[test]

@@ -129,15 +129,16 @@ impl Germ {
     }
 
     /// ξ at a place of the range in which values of an input are looked for, from −1 to 1. Equal steps are steps of ξ
-    /// where it is uniform, else of the normal score, so that tails have places, too.
+    /// where it is uniform, else of the normal score, so that tails have places, too. What has no bounds is looked for
+    /// where a normal score of this mean and standard deviation is: 0 and 1, unless other inputs are fixed.
     #[inline(always)]
-    pub fn along(&self, place: f64) -> f64 {
+    pub fn along(&self, place: f64, [mean, deviation]: [f64; 2]) -> f64 {
         match self {
             Self::Uniform => place,
-            Self::Normal | Self::Own(_) => {
-                let farthest = if self.reach() < 1.0 { normal_at(REACH) } else { pieces::REACH };
-                self.at_score(farthest * place)
+            Self::Normal | Self::Own(_) if self.reach() < 1.0 => {
+                self.at_score(deviation.mul_add(normal_at(REACH) * place, mean))
             }
+            Self::Normal | Self::Own(_) => self.at_score(pieces::REACH * place),
         }
     }
 }

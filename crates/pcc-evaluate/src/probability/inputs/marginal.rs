@@ -181,18 +181,47 @@ impl Marginal {
         !self.is_discrete() || (nearest() - physical).abs() <= ROUNDING * (upper - lower)
     }
 
+    /// The values next to one between them, of a law of single values; `None` if it can take that.
+    pub fn levels_around(&self, physical: f64) -> Option<[f64; 2]> {
+        let Transform::Pieces { origin, scale, quantile } = self.transform() else { return None };
+        let levels = || quantile.levels_around((physical - origin) / scale).map(|level| scale.mul_add(level, origin));
+        (!self.takes(physical)).then(levels)
+    }
+
     /// The physical value where 2F(x) − 1 is η ∈ (−1, 1).
     pub fn at_centred_probability(&self, centred: f64) -> f64 {
         self.physical(self.germ().at(centred))
     }
 
     /// The physical value at a place of the range in which values are looked for ([`Germ::along`]).
-    pub fn along(&self, place: f64) -> f64 {
+    pub fn along(&self, place: f64, of_scores: [f64; 2]) -> f64 {
         let [lower, upper] = self.support();
         match self {
             Self::Uniform(_) => (lower + 0.5 * (1.0 + place) * (upper - lower)).clamp(lower, upper),
-            Self::Other(_) => self.physical(self.germ().along(place)),
+            Self::Other(_) => self.physical(self.germ().along(place, of_scores)),
         }
+    }
+
+    /// How many orders of magnitude lie between the ends of the range in which values are looked for, where expansions
+    /// are polynomials of the logarithm, or of a normal variable: there all of them have to be followed. `None` where
+    /// they are polynomials of the value, beside the largest of which small ones are as good as zero.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc_evaluate::probability::inputs::{Marginal, Parameters};
+    /// let law = Marginal::named("log-uniform", &Parameters::of([("lower", 1e-2), ("upper", 1e4)]))?;
+    /// assert!((law.orders_of_magnitude().unwrap() - 6.0).abs() < 1e-12);
+    /// # Ok::<(), pcc_evaluate::probability::inputs::MarginalError>(())
+    /// ```
+    pub fn orders_of_magnitude(&self) -> Option<f64> {
+        let is_of_logarithm = match self.transform() {
+            Transform::Affine { .. } => false,
+            Transform::Exponential { .. } => true,
+            Transform::Pieces { .. } => matches!(self.germ(), Germ::Normal) && self.support()[0] == 0.0,
+        };
+        let end = |place: f64| self.along(place, [0.0, 1.0]).log10();
+        is_of_logarithm.then(|| end(1.0) - end(-1.0))
     }
 
     /// The interval that has all probability; infinite where it has no bound.
@@ -308,6 +337,41 @@ mod tests {
         }
         let (mean, _) = moments(&Marginal::named("exponential", &Parameters::of([("mean", 3.0)])).unwrap());
         assert!((mean - 3.0).abs() < 1e-3, "{mean}");
+    }
+
+    /// Between normal scores of ∓3.668: 10^(2 · 3.668 σ/ln 10).
+    #[test]
+    fn orders_of_magnitude_are_those_between_two_quantiles() {
+        let of = |name: &str, given: &[(&'static str, f64)], polynomials| {
+            let given = Parameters::of(given.iter().copied()).with_polynomials(polynomials);
+            Marginal::named(name, &given).unwrap().orders_of_magnitude()
+        };
+        let sigma = 2f64.ln().sqrt();
+        let found = of("lognormal", &[("mean", 3.0), ("cv", 1.0)], None).unwrap();
+        assert!((found - 2.0 * 3.668_329_285 * sigma / 10f64.ln()).abs() < 1e-6, "{found}");
+        let weibull = of("weibull", &[("shape", 0.1), ("scale", 2.0)], None).unwrap();
+        // ln(−ln(1 − p))/shape at p = 1/8192 and 8191/8192.
+        let ends = [1.0f64, 8191.0].map(|k| 10.0 * (-(-k / 8192.0).ln_1p()).log10());
+        assert!((weibull - (ends[1] - ends[0])).abs() < 1e-6, "{weibull} {ends:?}");
+        assert!(of("gamma", &[("shape", 0.05), ("scale", 1.0)], Some(Polynomials::Hermite)) > Some(16.0));
+        assert_eq!(of("gamma", &[("shape", 0.05), ("scale", 1.0)], None), None);
+        assert_eq!(of("uniform", &[("lower", 0.0), ("upper", 1e300)], None), None);
+    }
+
+    #[test]
+    fn values_between_levels_have_neighbours() {
+        let law = |values: [f64; 3]| {
+            let given = values.into_iter().flat_map(|value| [("value", value), ("weight", 1.0)]);
+            Marginal::named("discrete", &Parameters::of(given)).unwrap()
+        };
+        let levels = law([-1.0, 2.5, 100.0]);
+        assert_eq!([-1.0, 2.5, 100.0].map(|value| levels.levels_around(value)), [None; 3]);
+        for (value, expected) in [(-0.9, [-1.0, 2.5]), (2.4, [-1.0, 2.5]), (2.6, [2.5, 100.0]), (99.0, [2.5, 100.0])] {
+            let found = levels.levels_around(value).unwrap();
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{value}: {found:?}");
+        }
+        assert_eq!(law([0.1 + 0.2, 1.0, 2.0]).levels_around(0.3), None, "typed otherwise");
+        assert_eq!(laws()[0].levels_around(0.3), None);
     }
 
     #[test]

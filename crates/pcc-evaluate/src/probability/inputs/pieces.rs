@@ -162,6 +162,12 @@ impl Pieces {
         [end(before(lower - ROUNDING)), end(before(upper + ROUNDING))]
     }
 
+    /// The steps next to a value, below and above.
+    pub fn levels_around(&self, value: f64) -> [f64; 2] {
+        let above = self.pieces.partition_point(|piece| piece.coefficients[0] < value).min(self.pieces.len() - 1);
+        [above.saturating_sub(1), above].map(|at| self.pieces[at].coefficients[0])
+    }
+
     fn with_cells(pieces: Vec<Piece>) -> Self {
         let first_of = |cell: usize| pieces.partition_point(|piece| piece.end <= edge(cell)).min(pieces.len() - 1);
         let first = (0..CELLS).map(|cell| first_of(cell) as u16).collect();

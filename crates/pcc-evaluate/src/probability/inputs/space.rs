@@ -74,6 +74,16 @@ pub enum InputError {
         /// Upper end of the support.
         upper: f64,
     },
+    /// A coordinate lies between the single values that an input takes.
+    #[error("{name} = {value:?} is none of its values; next to it are {:?} and {:?}", nearest[0], nearest[1])]
+    BetweenLevels {
+        /// Name of the input.
+        name: String,
+        /// The coordinate.
+        value: f64,
+        /// The values next to it.
+        nearest: [f64; 2],
+    },
 }
 
 /// Correlations closer than this are one that two machines have computed.
@@ -250,16 +260,20 @@ impl InputSpace {
         self.inputs.iter().map(|input| input.marginal.germ().at(0.0)).collect()
     }
 
-    /// Whether every coordinate lies in its support.
+    /// Whether every coordinate is a value of its input.
     ///
     /// # Errors
     ///
-    /// [`InputError::Outside`] names the first that does not.
+    /// [`InputError::Outside`] names the first that lies outside its support, [`InputError::BetweenLevels`] the first
+    /// that lies between single values.
     pub fn check(&self, physical: &[f64]) -> Result<(), InputError> {
         for (input, &value) in self.inputs.iter().zip(physical) {
             if !input.marginal.contains(value) {
                 let [lower, upper] = input.marginal.support();
                 return Err(InputError::Outside { name: input.name.clone(), value, lower, upper });
+            }
+            if let Some(nearest) = input.marginal.levels_around(value) {
+                return Err(InputError::BetweenLevels { name: input.name.clone(), value, nearest });
             }
         }
         Ok(())
