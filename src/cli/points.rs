@@ -22,6 +22,8 @@ const GROUP: usize = 4096;
 pub(super) enum PointsError {
     #[error("cannot be read: {0}")]
     Csv(String),
+    #[error("is not UTF-8 text; convert it, as with iconv -f LATIN1 -t UTF-8, or -f UTF-16")]
+    NotText,
     #[error("there is no column {name}; the header is \"{found}\"; add the column, and separate columns by commas")]
     MissingColumn { name: String, found: String },
     #[error("column {name} is there twice; remove one")]
@@ -50,7 +52,10 @@ pub(super) enum PointsError {
 
 impl From<csv::Error> for PointsError {
     fn from(error: csv::Error) -> Self {
-        Self::Csv(error.to_string())
+        match error.kind() {
+            csv::ErrorKind::Utf8 { .. } => Self::NotText,
+            _ => Self::Csv(error.to_string()),
+        }
     }
 }
 
@@ -118,6 +123,10 @@ impl<'a> PointsFile<'a> {
             .flexible(true)
             .from_reader(ShortLines { inner: File::open(path).map_err(csv::Error::from)?, since_newline: 0 });
         let header = reader.headers()?.clone();
+        // Text in UTF-16 without a mark of it.
+        if header.iter().any(|name| name.contains('\0')) {
+            return Err(PointsError::NotText);
+        }
         let mut columns = Vec::new();
         for name in inputs.names() {
             let mut found = header.iter().enumerate().filter(|(_, column)| *column == name).map(|(at, _)| at);
