@@ -170,6 +170,8 @@ fn tables_and_levels_that_make_no_sense_are_refused() {
         ("\"data\"", "a data law has file"),
         ("\"data\", file = \"measured.csv\"", "has 2 columns; add column = \"part\""),
         ("\"data\", file = \"measured.csv\", column = \"y\"", "no column \"y\"; it has part, x"),
+        ("\"data\", file = \"commas.csv\"", "line 2: 1,5 has a decimal comma; write 1.5"),
+        ("\"data\", file = \"latin.csv\"", "latin.csv is not UTF-8 text; convert it, as with iconv -f LATIN1"),
         ("\"data\", file = \"words.csv\"", "line 2: \"two\" is no finite number"),
         ("\"data\", file = \"few.csv\"", "there are 9 values, but a law takes at least 10"),
         ("\"data\", file = \"measured.csv\", column = \"x\", lower = 0.7", "0.6 was measured"),
@@ -180,8 +182,39 @@ fn tables_and_levels_that_make_no_sense_are_refused() {
         let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
         write("study.toml", &oscillator(&[("x", law)], 1.1, ""));
         write("words.csv", "1.0\ntwo\n");
+        write("commas.csv", "x\n1,5\n2,5\n");
+        fs::write(folder.path().join("latin.csv"), b"\xfcber\n1.0\n").unwrap();
         write("few.csv", &"x\n".to_owned().chars().chain("1\n2\n3\n4\n5\n6\n7\n8\n9\n".chars()).collect::<String>());
         let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
         assert!(message.contains(expected) && message.contains("inputs.x"), "{law}: {message}");
     }
+}
+
+/// Between levels a surrogate is nothing but a polynomial, and the model was asked of something else.
+#[test]
+fn points_between_levels_are_refused_with_their_neighbours() {
+    let folder = built_from(&oscillator(&[("x", LEVELS), ("y", "\"normal\", mean = 0.0, std = 0.2")], 1.1, ""));
+    let (smooth, _) = built_from_measured(", column = \"x\"");
+    let (single, _) = built_from_measured(", column = \"x\", smoothing = \"none\"");
+    let ask = |folder: &Path, points: &[u8], arguments: &[&str]| {
+        fs::write(folder.join("in.csv"), points).unwrap();
+        in_one_line(&refusal(folder, &[arguments, &["--points", "in.csv", "--out", "out.csv"]].concat()))
+    };
+    for command in [["eval", "built.pcc"], ["reference", "study.toml"]] {
+        let message = ask(folder.path(), b"x,y\n1.5,0.1\n1.2,0.1\n", &command);
+        assert!(message.contains("row 2: x = 1.2 is none of its values; next to it are 1.0 and 1.5"), "{message}");
+        let message = ask(folder.path(), b"x,y\n0.4,0.1\n", &command);
+        assert!(message.contains("row 1: x = 0.4 lies outside [0.5, 1.5]"), "{message}");
+        let message = ask(single.path(), b"x\n0.9\n", &command);
+        assert!(message.contains("row 1: x = 0.9 is none of its values; next to it are 0.8"), "{message}");
+        let message = ask(folder.path(), b"x,y\n1.5,0.1\n1.\xa05,0.1\n", &command);
+        assert!(message.contains("in.csv: is not UTF-8 text; convert it"), "{message}");
+    }
+    let accept = |folder: &Path, points: &str, more: &[&str]| {
+        fs::write(folder.join("in.csv"), points).unwrap();
+        output(folder, &[&["eval", "built.pcc", "--points", "in.csv", "--out", "out.csv"], more].concat());
+    };
+    accept(folder.path(), "x,y\n1.5,0.1\n0.5,3\n", &[]);
+    accept(folder.path(), "x,y\n1.2,0.1\n", &["--extrapolate"]);
+    accept(smooth.path(), "x\n0.9\n", &[]);
 }

@@ -163,8 +163,8 @@ pub enum DependenceError {
     TooMany(CopulaError),
     /// A method that takes inputs as independent.
     #[error(
-        "fit.method \"{method}\" by quadrature takes inputs to be independent; choose a method by regression (minimum-norm, \
-         stepwise, omp, auto, or gpc with solver = \"least-squares\"), or remove [dependence]"
+        "fit.method \"{method}\" by quadrature takes inputs to be independent; choose a method by regression \
+         (minimum-norm, stepwise, omp, auto, or gpc with solver = \"least-squares\"), or remove [dependence]"
     )]
     Quadrature {
         /// The method.

@@ -1,7 +1,7 @@
 //! What can be wrong with a study file.
 
+use super::column::TableError;
 use super::dependence::DependenceError;
-use super::measured::TableError;
 use crate::mechanics::model::matrices::MatricesError;
 use pcc_evaluate::probability::inputs::{DescriptionError, InputError, MarginalError};
 use thiserror::Error;
@@ -261,6 +261,22 @@ pub enum StudyError {
         #[source]
         cause: MarginalError,
     },
+    /// A law over more orders of magnitude than an expansion follows.
+    #[error(
+        "{place}: values of this {law} law span {}, and expansions follow {most} at most, the digits of double \
+         precision; narrow it, or take a log-uniform law between the values that matter",
+        orders(*found)
+    )]
+    TooWide {
+        /// Where.
+        place: Place,
+        /// The law.
+        law: &'static str,
+        /// Orders of magnitude that its values span.
+        found: f64,
+        /// The most.
+        most: f64,
+    },
     /// A table of measured values that gives none.
     #[error("{place}: {cause}")]
     Table {
@@ -332,4 +348,11 @@ pub enum StudyError {
         #[source]
         cause: InputError,
     },
+}
+
+fn orders(found: f64) -> String {
+    match found.is_finite() {
+        true => format!("{found:.0} orders of magnitude"),
+        false => "more orders of magnitude than there are numbers".to_owned(),
+    }
 }

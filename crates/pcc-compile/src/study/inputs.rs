@@ -12,6 +12,10 @@ use pcc_evaluate::probability::inputs::{
 use std::path::Path;
 use toml::Spanned;
 
+/// Orders of magnitude of an input that an expansion follows: as many as doubles have digits. Over twelve of them
+/// estimated errors are too small by a factor of a few, over seventeen and more by ten, and builds take minutes.
+const MOST_ORDERS: f64 = 16.0;
+
 impl Lines<'_> {
     /// The inputs in their order.
     pub(super) fn inputs(
@@ -79,13 +83,18 @@ impl Lines<'_> {
             MarginalError::Form { law: "uniform", .. } => StudyError::DistributionForm { place: place.clone() },
             cause => StudyError::Distribution { place: place.clone(), cause },
         })?;
+        if let Some(found) = marginal.orders_of_magnitude().filter(|found| found.is_nan() || *found > MOST_ORDERS) {
+            return Err(StudyError::TooWide { place, law: marginal.name(), found, most: MOST_ORDERS });
+        }
         let [lower, upper] = marginal.support();
         if let Some(parameter) = parameter.filter(|p| !p.range.holds_nearly_all_of(&marginal)) {
             let expected = match lower.is_finite() && upper.is_finite() {
                 true => format!("{} over the whole interval", parameter.range.describe()),
                 false => {
-                    let range = parameter.range.describe();
-                    format!("{range} but for a billionth of all values; cut the law off with lower, or choose another")
+                    let is_cut = ["normal", "data"].contains(&marginal.name());
+                    let remedy =
+                        if is_cut { "cut the law off with lower, or choose another" } else { "choose another law" };
+                    format!("{} but for a billionth of all values; {remedy}", parameter.range.describe())
                 }
             };
             return Err(StudyError::OutOfRange { place, found: format!("from {lower:?} to {upper:?}"), expected });

@@ -1,5 +1,6 @@
 //! Studies: what to build a surrogate of, and how. A TOML file becomes a validated problem.
 
+mod column;
 mod defaults;
 mod dependence;
 mod error;
@@ -17,10 +18,10 @@ mod schema;
 mod settings;
 mod validate;
 
+pub use column::TableError;
 pub use dependence::{DependenceError, DependenceSettings, Measure};
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
-pub use measured::TableError;
 pub use model::{Command, ModelSettings, Table};
 #[cfg(feature = "schema")]
 pub use schema::schema;

@@ -134,8 +134,9 @@ fn quadrature_is_refused() {
 fn inputs_of_single_values_are_correlated_with_none() {
     for measure in ["spearman", "pearson"] {
         let study = Study::from_toml(&format!(
-            "format = 1\nname = \"s\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nK = [[\"a * b\"]]\n[inputs]\na = {{ distribution = \
-             \"discrete\", values = [1.0, 2.0] }}\nb = {{ distribution = \"normal\", mean = 9.0, std = 0.1 }}\n{}",
+            "format = 1\nname = \"s\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nK = [[\"a * b\"]]\n[inputs]\n\
+             a = {{ distribution = \"discrete\", values = [1.0, 2.0] }}\n\
+             b = {{ distribution = \"normal\", mean = 9.0, std = 0.1 }}\n{}",
             copula(&format!("{measure} = [[\"b\", \"a\", 0.3]]"))
         ));
         let message = study.unwrap_err().to_string();

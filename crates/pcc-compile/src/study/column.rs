@@ -1,0 +1,265 @@
+//! A column of a table of measured values.
+
+use std::path::Path;
+use thiserror::Error;
+
+/// Why a table gives no values.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum TableError {
+    /// It cannot be read.
+    #[error("{file} cannot be read: {cause}")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// What the system says.
+        cause: String,
+    },
+    /// It is not text as everybody reads it.
+    #[error("{file} is not UTF-8 text; convert it, as with iconv -f {encoding} -t UTF-8 {file} > utf8.csv")]
+    NotText {
+        /// The file.
+        file: String,
+        /// What it may be instead.
+        encoding: &'static str,
+    },
+    /// It has several columns, and none is named.
+    #[error("{file} has {} columns; add column = {:?}, or another of {}", columns.len(), columns[0], columns.join(", "))]
+    Columns {
+        /// The file.
+        file: String,
+        /// What they are called.
+        columns: Vec<String>,
+    },
+    /// It has several columns without names, or decimal commas.
+    #[error(
+        "{file} has {columns} columns of numbers without names; if these are decimal commas, write points \
+         (sed 's/,/./g' {file} > points.csv), else name the columns in its first line"
+    )]
+    Unnamed {
+        /// The file.
+        file: String,
+        /// Number of columns.
+        columns: usize,
+    },
+    /// It has no such column.
+    #[error("{file} has no column {column:?}; it has {}", columns.join(", "))]
+    NoColumn {
+        /// The file.
+        file: String,
+        /// The column.
+        column: String,
+        /// What they are called.
+        columns: Vec<String>,
+    },
+    /// A cell is no number.
+    #[error("{file}, line {line}: {found:?} is no finite number; correct it, or remove the line")]
+    NotANumber {
+        /// The file.
+        file: String,
+        /// Its line.
+        line: u64,
+        /// What stands there.
+        found: String,
+    },
+    /// A number with a comma for the point.
+    #[error(
+        "{file}, line {line}: {found} has a decimal comma; write {}, as sed 's/,/./g' {file} > points.csv does where \
+         no comma separates columns",
+        found.replace(',', ".")
+    )]
+    DecimalComma {
+        /// The file.
+        file: String,
+        /// Its line.
+        line: u64,
+        /// What stands there.
+        found: String,
+    },
+    /// A row is longer or shorter than the first.
+    #[error(
+        "{file}, line {line}: cells and columns differ in number, {found} and {expected}; write one cell per column"
+    )]
+    RowLength {
+        /// The file.
+        file: String,
+        /// Its line.
+        line: u64,
+        /// Number of cells.
+        found: usize,
+        /// Number of columns.
+        expected: usize,
+    },
+}
+
+/// What separates columns, in the order of precedence: a file that has semicolons or tabs may have decimal commas, too.
+const DELIMITERS: [u8; 2] = [b';', b'\t'];
+
+/// The numbers of a column. Columns end at commas, or at semicolons or tabs if the first line has some.
+pub(super) fn values(file: &str, column: Option<&str>, folder: &Path) -> Result<Vec<f64>, TableError> {
+    let name = || file.to_owned();
+    let unreadable = |cause: String| TableError::Unreadable { file: name(), cause };
+    let bytes = std::fs::read(folder.join(file)).map_err(|error| unreadable(error.to_string()))?;
+    let text = text(bytes).map_err(|encoding| TableError::NotText { file: name(), encoding })?;
+    let mut reader = csv::ReaderBuilder::new();
+    let reader = reader.delimiter(delimiter(&text)).has_headers(false).flexible(true).trim(csv::Trim::All);
+    let mut rows = reader.from_reader(text.as_bytes()).into_records();
+    let head: Vec<String> = match rows.next() {
+        Some(Ok(row)) => row.iter().map(str::to_owned).collect(),
+        Some(Err(error)) => return Err(unreadable(error.to_string())),
+        None => Vec::new(),
+    };
+    let is_numbers = || head.iter().all(|cell| number(cell).is_some());
+    if let Some(found) = head.iter().find(|cell| is_decimal_comma(cell)) {
+        return Err(TableError::DecimalComma { file: name(), line: 1, found: found.clone() });
+    }
+    let position = match column {
+        Some(column) => head.iter().position(|known| known == column).ok_or_else(|| TableError::NoColumn {
+            file: name(),
+            column: column.to_owned(),
+            columns: head.clone(),
+        })?,
+        None if head.len() > 1 && is_numbers() => {
+            return Err(TableError::Unnamed { file: name(), columns: head.len() });
+        }
+        None if head.len() > 1 => return Err(TableError::Columns { file: name(), columns: head }),
+        None => 0,
+    };
+    // A column without a name begins with its first value.
+    let mut values: Vec<f64> =
+        if column.is_none() { head.iter().filter_map(|cell| number(cell)).collect() } else { Vec::new() };
+    for (at, row) in rows.enumerate() {
+        let row = row.map_err(|error| unreadable(error.to_string()))?;
+        let line = row.position().map_or(at as u64 + 2, csv::Position::line);
+        values.push(cell(&row, position, head.len()).map_err(|wrong| wrong.at(name(), line))?);
+    }
+    Ok(values)
+}
+
+/// What is wrong with a row.
+enum Wrong {
+    Number(String),
+    Comma(String),
+    Length { found: usize, expected: usize },
+}
+
+impl Wrong {
+    fn at(self, file: String, line: u64) -> TableError {
+        match self {
+            Self::Number(found) => TableError::NotANumber { file, line, found },
+            Self::Comma(found) => TableError::DecimalComma { file, line, found },
+            Self::Length { found, expected } => TableError::RowLength { file, line, found, expected },
+        }
+    }
+}
+
+/// The number of a row of so many columns.
+fn cell(row: &csv::StringRecord, position: usize, columns: usize) -> Result<f64, Wrong> {
+    if row.len() != columns {
+        // Twice as many cells as columns are numbers that commas have cut in two.
+        let halves = [2 * position, 2 * position + 1].map(|at| row.get(at).unwrap_or_default());
+        let whole = halves.join(",");
+        let is_cut = row.len() == 2 * columns && is_decimal_comma(&whole);
+        return Err(if is_cut { Wrong::Comma(whole) } else { Wrong::Length { found: row.len(), expected: columns } });
+    }
+    let found = row.get(position).unwrap_or_default();
+    let wrong =
+        || if is_decimal_comma(found) { Wrong::Comma(found.to_owned()) } else { Wrong::Number(found.to_owned()) };
+    number(found).ok_or_else(wrong)
+}
+
+/// The text of a file; what it may be instead, if it is none.
+fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
+    let is_wide = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) || bytes.contains(&0);
+    if is_wide {
+        return Err("UTF-16");
+    }
+    let text = String::from_utf8(bytes).map_err(|_| "LATIN1")?;
+    Ok(text.trim_start_matches('\u{feff}').to_owned())
+}
+
+/// What separates the columns of the first line, but for what stands in quotes.
+fn delimiter(text: &str) -> u8 {
+    let first = text.lines().next().unwrap_or_default();
+    let plain: String = first.split('"').step_by(2).collect();
+    DELIMITERS.into_iter().find(|byte| plain.as_bytes().contains(byte)).unwrap_or(b',')
+}
+
+fn number(cell: &str) -> Option<f64> {
+    cell.parse().ok().filter(|value: &f64| value.is_finite())
+}
+
+/// Whether it is a number but for the comma that it has for a point.
+fn is_decimal_comma(cell: &str) -> bool {
+    cell.contains(',') && number(&cell.replace(',', ".")).is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(content: impl AsRef<[u8]>, column: Option<&str>) -> Result<Vec<f64>, TableError> {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("m.csv"), content).unwrap();
+        values("m.csv", column, folder.path())
+    }
+
+    fn message(content: impl AsRef<[u8]>, column: Option<&str>) -> String {
+        read(content, column).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn columns_are_found_with_and_without_names() {
+        assert_eq!(read("1.0\n2\n3e0\n", None), Ok(vec![1.0, 2.0, 3.0]));
+        assert_eq!(read("k\n1.0\n2\n", None), Ok(vec![1.0, 2.0]));
+        assert_eq!(read("\u{feff}a; k\n5;1.0\n6;2\n\n", Some("k")), Ok(vec![1.0, 2.0]));
+        assert_eq!(read("a\tk\r\n5\t1.0\r\n", Some("a")), Ok(vec![5.0]));
+        assert_eq!(read("\"a; in N\",k\n5,1.0\n", Some("a; in N")), Ok(vec![5.0]));
+        assert_eq!(read("\"x, in m\";k\n5;1.0\n", Some("k")), Ok(vec![1.0]));
+        assert_eq!(read("", None), Ok(vec![]));
+    }
+
+    #[test]
+    fn what_is_no_number_is_named_by_its_line() {
+        assert_eq!(
+            message("a,k\n1,2\n3,\n", Some("k")),
+            "m.csv, line 3: \"\" is no finite number; correct it, or remove the line"
+        );
+        assert!(message("k\n1\nnan\n", None).contains("line 3: \"nan\""));
+        assert!(message("a,k\n1,2\n", None).contains("add column = \"a\", or another of a, k"));
+        assert!(message("a,k\n1,2\n", Some("b")).contains("no column \"b\"; it has a, k"));
+        assert!(message("a,k\n1,2\n3\n", Some("a")).contains("line 3: cells and columns differ in number, 1 and 2"));
+        assert!(message("k\n1\n2,x\n", None).contains("line 3: cells and columns differ in number, 2 and 1"));
+    }
+
+    #[test]
+    fn decimal_commas_are_called_so() {
+        for (content, column, line) in [
+            ("k\n1\n1,5\n", None, 3),
+            ("k\n\"1,5\"\n", None, 2),
+            ("a,k\n1,0,1,5\n", Some("k"), 2),
+            ("a;k\n1,0;1,5\n", Some("k"), 2),
+            ("a\tk\n2\t1,5\n", Some("k"), 2),
+            ("1,5;2,25\n2,5;1,5\n", None, 1),
+        ] {
+            let expected = format!("m.csv, line {line}: 1,5 has a decimal comma; write 1.5, as sed 's/,/./g' m.csv");
+            let message = message(content, column);
+            assert!(message.starts_with(&expected), "{content:?}: {message}");
+        }
+        let two = message("1,5\n2,3\n", None);
+        assert!(two.contains("2 columns of numbers without names; if these are decimal commas, write points"), "{two}");
+    }
+
+    #[test]
+    fn other_encodings_are_called_so() {
+        let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+        for (content, encoding) in [
+            (b"gr\xf6\xdfe\n1\n".to_vec(), "LATIN1"),
+            (b"k\n1\xa0000\n".to_vec(), "LATIN1"),
+            (wide("k\n1\n"), "UTF-16"),
+            (wide("\u{feff}k\n1\n"), "UTF-16"),
+        ] {
+            let expected = format!("m.csv is not UTF-8 text; convert it, as with iconv -f {encoding} -t UTF-8 m.csv");
+            assert!(message(content, None).starts_with(&expected));
+        }
+    }
+}
