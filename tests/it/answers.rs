@@ -192,3 +192,25 @@ fn sweeps_of_undamped_systems_show_what_is_not_unstable() {
     let text = output(folder.path(), &["eval", "undamped.pcc", "-n", "1000", "--sweep", "k=0..4:9"]);
     assert!(in_one_line(&text).contains("between 0 % and 100 % of cases are stable or marginal."), "{text}");
 }
+
+/// Im λ = √(10¹² − c²/4) differs in its last digits alone, which no number of runs makes a function of.
+#[test]
+fn what_is_constant_to_rounding_is_no_noise() {
+    let inputs = "c = { distribution = \"uniform\", lower = 1.0, upper = 2.0 }\n\
+                  g = { distribution = \"uniform\", lower = 0.0, upper = 1.0 }";
+    for stiffness in ["1e12", "3e11", "7e12"] {
+        let study = format!(
+            "format = 1\nname = \"stiff\"\n[model]\nkind = \"matrices\"\nM = [[1, 0], [0, 1]]\n\
+             C = [[\"c\", 0], [0, \"2 * (0.3 - g)\"]]\nK = [[{stiffness}, 0], [0, 100]]\n[inputs]\n{inputs}\n"
+        );
+        let folder = crate::support::studies::folder_with(&study);
+        let report =
+            crate::support::studies::json(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
+        assert_eq!(report["warnings"], serde_json::json!([]), "{stiffness}");
+        assert!(
+            report["direct_computations"].as_u64().unwrap() <= 20,
+            "{stiffness}: {}",
+            report["direct_computations"]
+        );
+    }
+}

@@ -74,10 +74,14 @@ impl<'a> Response<'a> {
         Self { gradients: self.gradients.filter(|_| weight > 0.0), ..self }
     }
 
-    /// V̂ = Σ(y_i − ȳ)²/(N − 1), or `None` if the values are constant but for rounding.
+    /// V̂ = Σ(y_i − ȳ)²/(N − 1), or `None` if the values are constant but for rounding: of the model, or of numbers as
+    /// large as these, of which the last digits follow no law.
     pub fn variance(&self) -> Option<f64> {
+        /// A spread below this share of the values is lost beside them.
+        const LEAST_SPREAD: f64 = 1e3 * f64::EPSILON;
         let variance = Moments::of(self.values).variance();
-        (variance > self.resolution * self.resolution).then_some(variance)
+        let largest = self.values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        (variance.sqrt() > self.resolution.max(LEAST_SPREAD * largest)).then_some(variance)
     }
 
     /// Which equations these are, for so many inputs.
