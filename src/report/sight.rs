@@ -16,6 +16,8 @@ pub(super) enum Sight {
         error: f64,
         /// Whether only Re λ counts.
         is_without_margin: bool,
+        /// The number of points that this was looked at, where inputs have tails.
+        points: Option<u64>,
     },
     /// How large the rarer share is, is not known.
     Unknown {
@@ -38,7 +40,13 @@ impl Sight {
         let counts = surrogate.training.counts;
         let is_without_margin = surrogate.verdict.margin == Margin::default();
         Some(match number("nearest_excess").zip(number("nearest_error")) {
-            Some((nearest, error)) => Self::Everywhere { nearest, error, is_without_margin },
+            Some((nearest, error)) => {
+                let points = setting("nearest_points").and_then(|setting| match setting.value {
+                    SettingValue::Integer(points) => Some(points),
+                    _ => None,
+                });
+                Self::Everywhere { nearest, error, is_without_margin, points }
+            }
             None => Self::Unknown { unstable, runs: counts.direct_computations.saturating_sub(counts.failed) },
         })
     }
@@ -48,12 +56,13 @@ impl Sight {
         matches!(self, Self::Unknown { .. })
     }
 
-    /// The same with samples of which max Re λ is from `least` to `largest`: some may come nearer to the boundary.
-    pub fn seen_in(self, least: f64, largest: f64) -> Self {
+    /// The same with `samples` of which max Re λ is from `least` to `largest`: some may come nearer to the boundary.
+    pub fn seen_in(self, samples: u64, [least, largest]: [f64; 2]) -> Self {
         match self {
-            Self::Everywhere { nearest, error, is_without_margin: true } if nearest != 0.0 => {
+            Self::Everywhere { nearest, error, is_without_margin: true, points } if nearest != 0.0 => {
                 let nearest = if nearest < 0.0 { nearest.max(largest) } else { nearest.min(least) };
-                Self::Everywhere { nearest, error, is_without_margin: true }
+                let points = points.map(|points| points.saturating_add(samples));
+                Self::Everywhere { nearest, error, is_without_margin: true, points }
             }
             other => other,
         }
@@ -63,11 +72,13 @@ impl Sight {
     pub fn words(self) -> String {
         match self {
             Self::Everywhere { nearest: 0.0, .. } => "unstable nowhere: what decides is marginal".to_owned(),
-            Self::Everywhere { nearest, error, is_without_margin } => {
+            Self::Everywhere { nearest, error, is_without_margin, points } => {
                 let (side, which) = if nearest < 0.0 { ("stable", "largest") } else { ("unstable", "smallest") };
                 let what = if is_without_margin { "max Re λ" } else { "excess over the margin" };
                 let (nearest, error) = (significant(nearest, 3), at_most(error));
-                format!("{side} everywhere: {which} {what} {nearest} 1/s, error at most {error} 1/s")
+                let seen =
+                    points.map_or_else(String::new, |points| format!(" in {}", plural(points as usize, "point")));
+                format!("{side} everywhere{seen}: {which} {what} {nearest} 1/s, error at most {error} 1/s")
             }
             Self::Unknown { .. } => {
                 let (side, seen) = self.seen();
@@ -135,10 +146,14 @@ mod tests {
         assert_eq!(words(0), "unstable in a share that is not known; none of 45 model runs was unstable");
         assert_eq!(words(2), "unstable in a share that is not known; only 2 of 45 model runs were unstable");
         assert_eq!(words(44), "stable in a share that is not known; only 1 of 45 model runs was stable");
-        let everywhere = Sight::Everywhere { nearest: -5.2, error: 0.0094, is_without_margin: true };
+        let everywhere = Sight::Everywhere { nearest: -5.2, error: 0.0094, is_without_margin: true, points: None };
         assert_eq!(everywhere.words(), "stable everywhere: largest max Re λ -5.20 1/s, error at most 0.0094 1/s");
-        let seen = everywhere.seen_in(-90.0, -5.1).words();
+        let seen = everywhere.seen_in(1000, [-90.0, -5.1]).words();
         assert_eq!(seen, "stable everywhere: largest max Re λ -5.10 1/s, error at most 0.0094 1/s");
+        let tails = Sight::Everywhere { nearest: -5.2, error: 0.0094, is_without_margin: true, points: Some(50_000) };
+        assert!(tails.words().starts_with("stable everywhere in 50 000 points: largest max Re λ -5.20 1/s"));
+        let more = tails.seen_in(1000, [-90.0, -5.1]).words();
+        assert!(more.starts_with("stable everywhere in 51 000 points: largest max Re λ -5.10 1/s"), "{more}");
         assert!(everywhere.warning().is_none() && Sight::Unknown { unstable: 0, runs: 9 }.warning().is_some());
     }
 }

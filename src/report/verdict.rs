@@ -82,7 +82,10 @@ impl EvalReport {
                 Sight::Unknown { .. } => false,
             };
             if is_seen {
-                return format!("is {}", sight.seen_in(self.max_re.minimum, self.max_re.maximum).words());
+                return format!(
+                    "is {}",
+                    sight.seen_in(self.samples, [self.max_re.minimum, self.max_re.maximum]).words()
+                );
             }
         }
         let samples = plural(self.samples as usize, "sample");

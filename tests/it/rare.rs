@@ -127,6 +127,19 @@ fn two_oscillators_are_stable_everywhere_with_the_distance_of_the_less_damped() 
     let sentence = part["verdict"].as_str().unwrap();
     assert!(sentence.contains("is never unstable in 1 000 samples"), "not of the whole domain: {sentence}");
     assert!(run(&["inspect", "two.pcc"]).contains("stable everywhere: largest max Re λ -0.300"));
+    // Where an input has tails, points have not seen all of it.
+    let tails = study.replace("\"uniform\", lower = 0.4, upper = 0.6", "\"normal\", mean = 0.5, std = 0.01");
+    fs::write(folder.path().join("tails.toml"), tails.replace("\"two\"", "\"tails\"")).unwrap();
+    let count = |report: &Value| -> u64 {
+        let verdict = report["verdict"].as_str().unwrap();
+        let (_, rest) = verdict.split_once("is stable everywhere in ").unwrap_or_else(|| panic!("{verdict}"));
+        let (points, rest) = rest.split_once(" points: ").unwrap();
+        assert!(rest.starts_with("largest max Re λ -0.300"), "{verdict}");
+        points.replace(|c: char| !c.is_ascii_digit(), "").parse().unwrap()
+    };
+    let points = count(&json(&["build", "tails.toml", "--quiet"]));
+    assert!(points >= 10_000, "{points}");
+    assert_eq!(count(&json(&["eval", "tails.pcc", "-n", "1000"])), points + 1000);
     // Mirrored, it is unstable everywhere.
     let unstable = study.replace("2 * c", "-2 * c").replace("\"two\"", "\"grows\"");
     fs::write(folder.path().join("grows.toml"), unstable).unwrap();

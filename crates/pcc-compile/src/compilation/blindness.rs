@@ -34,6 +34,8 @@ pub(super) struct Sight {
     pub is_marginal: bool,
     /// How far everything stays from the boundary, if it is far enough.
     pub clearance: Option<Clearance>,
+    /// The number of points at which it does.
+    pub points: usize,
 }
 
 /// How far everything stays from the boundary.
@@ -108,7 +110,7 @@ impl Groups {
 
     /// What `unstable` of so many `runs` say, without the distance from the boundary.
     pub fn sight(&self, unstable: usize, runs: usize) -> Sight {
-        Sight { unstable, runs, is_marginal: self.are_wholly_marginal, clearance: None }
+        Sight { unstable, runs, is_marginal: self.are_wholly_marginal, clearance: None, points: 0 }
     }
 
     /// How far everything stays from the boundary at the points of `block`, on the side of all runs.
@@ -184,7 +186,7 @@ mod tests {
 
     #[test]
     fn below_three_runs_on_either_side_a_level_is_blind() {
-        let sight = |unstable| Sight { unstable, runs: 20, is_marginal: false, clearance: None };
+        let sight = |unstable| Sight { unstable, runs: 20, is_marginal: false, clearance: None, points: 0 };
         let blind: Vec<usize> = (0..=20).filter(|&unstable| sight(unstable).is_blind()).collect();
         assert_eq!(blind, [0, 1, 2, 18, 19, 20]);
         assert!(!Sight { is_marginal: true, ..sight(0) }.is_blind(), "marginal everywhere is a result");

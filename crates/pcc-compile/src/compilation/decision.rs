@@ -209,9 +209,11 @@ pub(super) fn judge(
     };
     if sight.is_blind() && sight.rare() == 0 {
         let is_stable = sight.unstable == 0;
+        sight.points = judge.points();
         sight.clearance = groups.clearance(surrogate, judge.block(), is_stable);
         if sight.clearance.is_some() && purpose.is_final {
             let block = at_judged_points(surrogate, points_for(surrogate, 0), observer)?;
+            sight.points = block.excess.len();
             sight.clearance = groups.clearance(surrogate, &block, is_stable);
         }
     }
@@ -432,7 +434,7 @@ mod tests {
     fn what_is_doubtful_or_blind_is_not_known() {
         let doubtful = Judgement { is_doubtful: true, ..judged(0.5, 0.0) };
         assert!(judged(0.5, 0.0).is_within(1e-5) && !doubtful.is_within(1.0) && !Judgement::default().is_within(1.0));
-        let sight = Sight { unstable: 2, runs: 20, is_marginal: false, clearance: None };
+        let sight = Sight { unstable: 2, runs: 20, is_marginal: false, clearance: None, points: 0 };
         let blind = Judgement { sight: Some(sight), ..judged(0.5, 0.0) };
         assert!(!blind.is_within(1.0) && blind.would_be_within(Some(1e-5)));
     }
