@@ -264,8 +264,9 @@ pub enum StudyError {
     /// A law over more orders of magnitude than an expansion follows.
     #[error(
         "{place}: values of this {law} law span {}, and expansions follow {most} at most, the digits of double \
-         precision; narrow it, or take a log-uniform law between the values that matter",
-        orders(*found)
+         precision; {}",
+        orders(*found),
+        narrower(law)
     )]
     TooWide {
         /// Where.
@@ -354,5 +355,12 @@ fn orders(found: f64) -> String {
     match found.is_finite() {
         true => format!("{found:.0} orders of magnitude"),
         false => "more orders of magnitude than there are numbers".to_owned(),
+    }
+}
+
+fn narrower(law: &str) -> &'static str {
+    match law {
+        "log-uniform" => "bring lower and upper closer together, around the values that matter",
+        _ => "narrow it, or take a log-uniform law between the values that matter",
     }
 }

@@ -186,7 +186,7 @@ impl Marginal {
         let given = given.clone().with_polynomials(Some(stored.polynomials));
         match made(name, &given).map_err(|error| error.to_string())? {
             (law, Made::Finished(_)) => Err(format!("a {law} law has no pieces")),
-            (_, Made::Levels(levels)) => levels.as_stored(stored).map(Self::of).map_err(str::to_owned),
+            (_, Made::Levels(levels)) => levels.with_stored(stored).map(Self::of).map_err(str::to_owned),
             (_, Made::Draft(draft)) => draft.stored(stored).map_err(str::to_owned),
         }
     }

@@ -177,7 +177,7 @@ impl Shaped {
     }
 
     /// The law as a file has it, of which all steps are known; a sentence if that is not its map.
-    pub fn as_stored(self, stored: Stored) -> Result<Self, &'static str> {
+    pub fn with_stored(self, stored: Stored) -> Result<Self, &'static str> {
         if stored.map != [self.origin, self.scale] || stored.quantile != *self.quantile {
             return Err("its steps are not those of its law");
         }
