@@ -360,7 +360,7 @@ mod tests {
                 &[("nominal", 0.0), ("cv", 0.1)],
                 "cv = 0.1 is a share of nominal, which is 0; give mean and std",
             ),
-            ("gumbel", &[("mean", 1e308), ("std", 1e308)], "with mean = 1e308, std = 1e308,"),
+            ("gumbel", &[("mean", -1.5e308), ("std", 1e308)], "with mean = -1.5e308, std = 1e308, location is -inf"),
             (
                 "uniform",
                 &[("nominal", 0.0), ("spread", 0.1)],
