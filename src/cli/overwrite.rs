@@ -19,6 +19,8 @@ pub(super) enum Output<'a> {
     Marked(&'a str),
     /// A table whose header has these neighbouring columns, in the place of its like.
     Table(&'a str),
+    /// A table of results at points, in the place of its like.
+    Results,
     /// A table with this header, in the place of its like: with more columns it holds somebody's work.
     TableWithHeader(&'a str),
 }
@@ -30,10 +32,12 @@ pub(super) const REPRODUCTION_PAGE: &str = "<meta name=\"generator\" content=\"p
 /// What pictures have near their start.
 pub(super) const PICTURE: &str = "sheet-title";
 
-/// Columns of tables of sweeps, of points, and of recorded runs.
+/// Columns of tables of sweeps and of recorded runs.
 pub(super) const SWEEP_COLUMNS: &str = "stable_samples,stable_proportion,lower,upper";
-pub(super) const RESULT_COLUMNS: &str = "max_re,stable";
 pub(super) const RECORD_COLUMNS: &str = "record,model,status,attempts,seconds";
+
+/// Neighbouring columns of tables of points, one of each: without intervals, and with.
+const RESULT_COLUMNS: [&str; 2] = ["max_re,stable", "max_re_upper,stable"];
 
 /// Refuses an output that would replace one of the command's own `inputs`, or a file of another kind: a study or data
 /// named by mistake.
@@ -54,6 +58,10 @@ pub(super) fn refuse_to_replace(path: &Path, output: Output, inputs: &[&Path]) -
             bail!("{shown}: exists and was not made by pcc; name another output, or remove it first")
         }
         Output::Table(columns) if !(is_read && holds(header(&start), columns)) => {
+            bail!("{shown}: exists and is no such table ({columns}, …); name another output, or remove it first")
+        }
+        Output::Results if !(is_read && RESULT_COLUMNS.iter().any(|columns| holds(header(&start), columns))) => {
+            let columns = RESULT_COLUMNS[0];
             bail!("{shown}: exists and is no such table ({columns}, …); name another output, or remove it first")
         }
         Output::TableWithHeader(expected) if !(is_read && header(&start) == expected.as_bytes()) => {

@@ -2,7 +2,8 @@
 
 use num_complex::Complex;
 use pcc_evaluate::components::{Label, Top, Verdict};
-use pcc_evaluate::foundation::{Observer, save_with};
+use pcc_evaluate::evaluation::PointIntervals;
+use pcc_evaluate::foundation::{Observer, plural, save_with};
 use pcc_evaluate::probability::inputs::{InputError, InputSpace};
 use serde::Serialize;
 use std::fmt;
@@ -11,8 +12,8 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use thiserror::Error;
 
-/// The columns after the eigenvalues.
-const RESULT_COLUMNS: [&str; 3] = ["max_re", "stable", "verdict"];
+/// The last columns.
+const VERDICT_COLUMNS: [&str; 2] = ["stable", "verdict"];
 
 /// Points that are read, evaluated and written together: memory does not grow with the file.
 const GROUP: usize = 4096;
@@ -72,7 +73,24 @@ pub(super) struct PointsReport {
     /// does not say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub extrapolated_points: Option<u64>,
+    /// The intervals that were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interval: Option<IntervalReport>,
     pub file: String,
+}
+
+/// What intervals at points rest on.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub(super) struct IntervalReport {
+    /// The level.
+    pub level: f64,
+    /// Model runs left out one by one.
+    pub runs: u64,
+    /// Runs from which on intervals have ends at this level.
+    pub least_runs: u64,
+    /// Whether they have none: they are infinite at every point.
+    pub is_infinite: bool,
 }
 
 impl fmt::Display for PointsReport {
@@ -87,8 +105,22 @@ impl fmt::Display for PointsReport {
                 "\nwarning: {count} of them lie beyond all model runs in some input; there the surrogate extrapolates"
             )?;
         }
-        Ok(())
+        match &self.interval {
+            Some(IntervalReport { level, runs, least_runs, is_infinite: true }) => writeln!(
+                f,
+                "\nwarning: intervals at level {level} need {least_runs} model runs left out, and the surrogate keeps {runs}: \
+                 they are infinite; lower the level, or let the build make more runs with design.initial"
+            ),
+            Some(IntervalReport { level, runs, .. }) => {
+                writeln!(f, "\nintervals at level {level}, from what was missed at {}", left_out(*runs))
+            }
+            None => Ok(()),
+        }
     }
+}
+
+fn left_out(runs: u64) -> String {
+    format!("{} left out", plural(runs as usize, "model run"))
 }
 
 /// What points yield.
@@ -97,6 +129,8 @@ pub(super) struct Evaluated {
     pub labels: Vec<Label>,
     /// Per point, the eigenvalues by label, and what decides.
     pub results: Vec<(Vec<Complex<f64>>, Top)>,
+    /// Per point, the intervals, if they were asked for.
+    pub intervals: Option<Vec<PointIntervals>>,
 }
 
 /// A CSV file with one column per input.
@@ -169,8 +203,8 @@ impl<'a> PointsFile<'a> {
     }
 
     /// Evaluates all points in groups and writes `path`: the point, re_k and im_k of each mode (and re_k_b, where it
-    /// can have two real eigenvalues), the other real eigenvalues, max_re, stable, verdict. Returns the number of
-    /// points and of stable ones. Nothing is written if anything fails.
+    /// can have two real eigenvalues), the other real eigenvalues, max_re, stable, verdict; with the ends of intervals
+    /// after each number they are of. Returns the number of points and of stable ones. Nothing is written if anything fails.
     pub fn evaluate(
         mut self,
         path: &Path,
@@ -191,12 +225,20 @@ impl<'a> PointsFile<'a> {
                     }
                 };
                 if rows == 0 {
-                    writer.write_record(header(self.inputs, &found.labels))?;
+                    writer.write_record(header(self.inputs, &found.labels, found.intervals.is_some()))?;
                 }
                 let order = in_order(&found.labels);
-                for (point, (eigenvalues, top)) in points.iter().zip(&found.results) {
-                    let cells = order.iter().flat_map(|&at| cells(found.labels[at], eigenvalues[at]));
-                    write_row(&mut writer, point.iter().copied().chain(cells), *top)?;
+                for (i, (point, (eigenvalues, top))) in points.iter().zip(&found.results).enumerate() {
+                    let intervals = found.intervals.as_ref().map(|intervals| &intervals[i]);
+                    let cells = order.iter().flat_map(|&at| {
+                        cells(found.labels[at], eigenvalues[at], intervals.map(|own| own.eigenvalues[at]))
+                    });
+                    let cells = point
+                        .iter()
+                        .copied()
+                        .chain(cells)
+                        .chain(with_ends(top.max_re, intervals.map(|own| own.max_re)));
+                    write_row(&mut writer, cells, *top)?;
                     stable += u64::from(top.verdict() == Verdict::Stable);
                 }
                 rows += points.len() as u64;
@@ -278,24 +320,34 @@ fn in_order(labels: &[Label]) -> Vec<usize> {
     order
 }
 
-fn header(inputs: &InputSpace, labels: &[Label]) -> Vec<String> {
-    let mut header: Vec<String> = inputs.names().map(str::to_owned).collect();
-    for at in in_order(labels) {
-        header.push(labels[at].growth_rate());
-        header.extend(labels[at].mode().map(|mode| format!("im_{mode}")));
-    }
-    header.extend(RESULT_COLUMNS.map(str::to_owned));
-    header
+fn header(inputs: &InputSpace, labels: &[Label], has_intervals: bool) -> Vec<String> {
+    let with_ends = |name: String| {
+        let ends = ["lower", "upper"].map(|end| format!("{name}_{end}"));
+        std::iter::once(name).chain(ends.into_iter().filter(move |_| has_intervals))
+    };
+    let of_label = |at: usize| {
+        let frequency = labels[at].mode().map(|mode| format!("im_{mode}"));
+        std::iter::once(labels[at].growth_rate()).chain(frequency)
+    };
+    let results = in_order(labels).into_iter().flat_map(of_label).chain(["max_re".to_owned()]).flat_map(with_ends);
+    let verdicts = VERDICT_COLUMNS.map(str::to_owned);
+    inputs.names().map(str::to_owned).chain(results).chain(verdicts).collect()
 }
 
-/// Re λ, and Im λ of the first eigenvalue of a mode.
-fn cells(label: Label, lambda: Complex<f64>) -> impl Iterator<Item = f64> {
-    std::iter::once(lambda.re).chain(label.mode().map(|_| lambda.im))
+/// Re λ, and Im λ of the first eigenvalue of a mode; each with the ends of its interval, if there are intervals.
+fn cells(label: Label, lambda: Complex<f64>, ends: Option<[[f64; 2]; 2]>) -> impl Iterator<Item = f64> {
+    let part = move |which: usize, value: f64| with_ends(value, ends.map(|ends| ends[which]));
+    part(0, lambda.re).chain(label.mode().into_iter().flat_map(move |_| part(1, lambda.im)))
+}
+
+/// A value and the ends of its interval, if it has one.
+fn with_ends(value: f64, ends: Option<[f64; 2]>) -> impl Iterator<Item = f64> {
+    std::iter::once(value).chain(ends.into_iter().flatten())
 }
 
 /// Numbers by their shortest exact decimals.
 fn write_row<W: Write>(writer: &mut csv::Writer<W>, numbers: impl Iterator<Item = f64>, top: Top) -> csv::Result<()> {
-    for value in numbers.chain([top.max_re]) {
+    for value in numbers {
         writer.write_field(format!("{value:?}"))?;
     }
     let verdict = top.verdict();

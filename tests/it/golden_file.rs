@@ -236,6 +236,10 @@ fn domain(b: &mut B) -> Value {
     b.fields(&[("inputs", &|b| b.list(|b| b.option(interval)))])
 }
 
+fn left_out(b: &mut B) -> Value {
+    b.fields(&[("runs", &|b| b.list(|b| b.list(B::float)))])
+}
+
 /// Fields of a certificate in section 9, version 1.
 const CERTIFICATE: [Field; 9] = [
     ("seed", &u64_number),
@@ -311,7 +315,7 @@ fn document(file: &[u8]) -> Value {
     let mut document = json!({ "format": { "major": b.u16(), "minor": b.u16() } });
     assert_eq!(b.u32(), 1, "codec");
     assert_eq!(b.u64() as usize, file.len() - b.at - 4, "length of what follows, without the CRC");
-    let sections: [Field; 13] = [
+    let sections: [Field; 14] = [
         ("meta", &meta),
         ("inputs", &inputs),
         ("outputs", &outputs),
@@ -325,8 +329,9 @@ fn document(file: &[u8]) -> Value {
         ("coverage", &coverage),
         ("descriptions", &descriptions),
         ("domain", &domain),
+        ("left_out", &left_out),
     ];
-    for (kind, (name, read)) in [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13].into_iter().zip(sections) {
+    for (kind, (name, read)) in (1..=14).zip(sections) {
         let is_next = b.at < file.len() - 4 && u16::from_le_bytes([file[b.at], file[b.at + 1]]) == kind;
         if kind > 8 && !is_next {
             continue;
@@ -388,6 +393,18 @@ fn it_reads_where_the_model_did_not_answer() {
 }
 
 #[test]
+fn it_reads_what_was_missed_at_runs_left_out() {
+    use pcc_evaluate::artifact::{Format, encode};
+    let surrogate = crate::support::built("clutch-r2");
+    let json: Value = serde_json::from_slice(&encode(surrogate, Format::Json).unwrap()).unwrap();
+    let found = document(&encode(surrogate, Format::Binary).unwrap());
+    assert_eq!(found, json);
+    let runs = found["left_out"]["runs"].as_array().unwrap();
+    assert_eq!(runs.len() as u64, surrogate.training.counts.values);
+    assert_eq!(runs[0].as_array().unwrap().len(), surrogate.component_count());
+}
+
+#[test]
 fn it_reads_units_and_labels() {
     use pcc_evaluate::artifact::{Format, encode};
     let surrogate = crate::described::surrogate();
@@ -409,6 +426,7 @@ fn it_reads_certificates_of_both_versions() {
     use pcc_evaluate::foundation::Silent;
     let study = crate::support::invariants_study(2);
     let mut surrogate = crate::support::built("clutch-r2").clone();
+    surrogate.left_out = None;
     let made = certify_with_model(&surrogate, &study, 30, 1, 0.95, &Silent).unwrap();
     let independent = pcc_evaluate::surrogate::Certificate { strata: None, ..made.clone() };
     let bounds =

@@ -23,6 +23,7 @@ mod full_expansions;
 mod golden_file;
 mod gradient_fits;
 mod help;
+mod intervals;
 mod invariants;
 mod judgement;
 mod kills;

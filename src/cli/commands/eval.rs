@@ -2,8 +2,8 @@
 
 use crate::cli::answers::{check_pictures, present};
 use crate::cli::inputs::read_surrogate;
-use crate::cli::overwrite::{Output, RESULT_COLUMNS, claim};
-use crate::cli::points::{Evaluated, PointsFile, PointsReport};
+use crate::cli::overwrite::{Output, claim};
+use crate::cli::points::{Evaluated, IntervalReport, PointsFile, PointsReport};
 use crate::cli::question_options::{ASKED, QuestionOptions, Shard, shard};
 use crate::cli::shared_options::{Pictures, PointsOptions, SAMPLES, sample_count, seed};
 use crate::cli::{Context, Ending, about};
@@ -11,11 +11,11 @@ use crate::report::PartReport;
 use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use pcc_evaluate::evaluation::{Plan, evaluate_points};
+use pcc_evaluate::evaluation::{IntervalLevel, Plan, evaluate_points, point_intervals};
 use pcc_evaluate::foundation::{InstructionSet, save};
 use pcc_evaluate::session::{Request, Session, SessionError};
 use pcc_evaluate::shard_file::MARK;
-use pcc_evaluate::surrogate::Surrogate;
+use pcc_evaluate::surrogate::{LeftOut, Surrogate};
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -65,6 +65,11 @@ pub(in crate::cli) struct Options {
     #[command(flatten)]
     pub given: PointsOptions,
 
+    /// Beside each eigenvalue and max_re at these points, its interval at this level, like 0.9: columns named _lower and
+    /// _upper, from what the surrogate missed at model runs left out
+    #[arg(long, help_heading = "Points instead of samples", value_name = "LEVEL", requires = "points")]
+    pub interval: Option<IntervalLevel>,
+
     /// Also show where the system loses stability: the smallest value of INPUT, given the other inputs
     #[arg(long, help_heading = ASKED, value_name = "INPUT", conflicts_with_all = ["points", "sweep", "part"])]
     pub critical: Option<String>,
@@ -92,8 +97,8 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
     let surrogate = read_surrogate(&options.surrogate)?.surrogate;
     let name = &surrogate.provenance.study_name;
     if let (Some(points), Some(out)) = (&options.given.points, &options.given.out) {
-        claim(out, Output::Table(RESULT_COLUMNS), &[points, &options.surrogate])?;
-        context.print(&at_points(context, &surrogate, points, out, options.given.extrapolate)?)?;
+        claim(out, Output::Results, &[points, &options.surrogate])?;
+        context.print(&at_points(context, &surrogate, (points, out), options)?)?;
         return Ok(Ending::Done);
     }
     let instructions = instructions(options.instructions.as_deref())?;
@@ -191,12 +196,15 @@ fn write_part(
 fn at_points(
     context: &Context,
     surrogate: &Surrogate,
-    points: &Path,
-    out: &Path,
-    extrapolate: bool,
+    (points, out): (&Path, &Path),
+    options: &Options,
 ) -> anyhow::Result<PointsReport> {
+    let asked = match options.interval {
+        Some(level) => Some((level, left_out(surrogate, options)?)),
+        None => None,
+    };
     let plan = Plan::new(surrogate);
-    let file = PointsFile::open(points, &surrogate.inputs, extrapolate)?;
+    let file = PointsFile::open(points, &surrogate.inputs, options.given.extrapolate)?;
     let (unanswered, extrapolated) = (Cell::new(0), Cell::new(0));
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
         let standardized: Vec<Vec<f64>> = group.iter().map(|point| surrogate.inputs.standardized(point)).collect();
@@ -212,13 +220,33 @@ fn at_points(
         let block = evaluate_points(surrogate, &plan, &references);
         let eigenvalues = |i: usize| block.eigenvalues.iter().map(|mode| mode[i]).collect();
         let results = (0..group.len()).map(|i| (eigenvalues(i), block.top(i))).collect();
-        Ok(Evaluated { labels: surrogate.labels(), results })
+        let intervals = |(level, left_out)| point_intervals(surrogate, left_out, &block, level, &context.terminal);
+        Ok(Evaluated { labels: surrogate.labels(), results, intervals: asked.map(intervals).transpose()? })
     })?;
     Ok(PointsReport {
         points: count,
         stable_points: stable,
         unanswered_points: surrogate.coverage.as_ref().map(|_| unanswered.get()),
         extrapolated_points: surrogate.trained_domain.as_ref().map(|_| extrapolated.get()),
+        interval: asked.map(|(level, left_out)| interval_report(level, left_out.runs().len())),
         file: out.display().to_string(),
     })
+}
+
+/// What intervals are made of.
+fn left_out<'s>(surrogate: &'s Surrogate, options: &Options) -> anyhow::Result<&'s LeftOut> {
+    surrogate.left_out.as_ref().with_context(|| {
+        format!(
+            "--interval: {} does not say what the surrogate missed at model runs left out: quadratures leave none out, and \
+             files of pcc 0.1.0 do not keep it; build it again, by another method than gpc and me-gpc, or leave out \
+             --interval",
+            options.surrogate.display()
+        )
+    })
+}
+
+fn interval_report(level: IntervalLevel, runs: usize) -> IntervalReport {
+    let least_runs = level.least_runs();
+    let is_infinite = runs < least_runs;
+    IntervalReport { level: level.value(), runs: runs as u64, least_runs: least_runs as u64, is_infinite }
 }

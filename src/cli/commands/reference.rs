@@ -1,7 +1,7 @@
 //! `pcc reference`
 
 use crate::cli::inputs::read_study;
-use crate::cli::overwrite::{Output, RESULT_COLUMNS, claim};
+use crate::cli::overwrite::{Output, claim};
 use crate::cli::points::{Evaluated, PointsFile, PointsReport};
 use crate::cli::shared_options::{PointsOptions, RecordingOptions, sample_count, seed};
 use crate::cli::study_of::runs_or_default;
@@ -53,7 +53,7 @@ pub(in crate::cli) struct Options {
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
     let study = read_study(&options.study)?;
     if let (Some(points), Some(out)) = (&options.given.points, &options.given.out) {
-        claim(out, Output::Table(RESULT_COLUMNS), &[points, &options.study])?;
+        claim(out, Output::Results, &[points, &options.study])?;
         let books = context.books_of_sampling(&study, &options.recording.to_recording())?;
         let campaign = books.campaign(&study);
         let source = options.study.display().to_string();
@@ -85,13 +85,14 @@ fn at_points(
     let (count, stable) = file.evaluate(out, &context.terminal, |group| {
         let answers = reference.run(group, &context.terminal).map_err(|error| about(&source, error))?;
         let results = answers.into_iter().map(|answer| (answer.eigenvalues, answer.top)).collect();
-        Ok(Evaluated { labels: reference.labels().to_vec(), results })
+        Ok(Evaluated { labels: reference.labels().to_vec(), results, intervals: None })
     })?;
     Ok(PointsReport {
         points: count,
         stable_points: stable,
         unanswered_points: None,
         extrapolated_points: None,
+        interval: None,
         file: out.display().to_string(),
     })
 }

@@ -23,7 +23,7 @@ const COMMANDS: [(&str, &[&str]); 6] = [
             "eval clutch.pcc -n 1e4 --sweep mu=0:0.5:2",
             "build normal.toml -o normal.pcc",
             "eval normal.pcc -n 1e4",
-            "eval normal.pcc --points points.csv --out results.csv",
+            "eval normal.pcc --points points.csv --out results.csv --interval 0.9",
             "eval dependent.pcc -n 1e4",
         ],
     ),

@@ -14,8 +14,8 @@ use crate::study::Study;
 use pcc_evaluate::components::{Component, Output};
 use pcc_evaluate::polynomials::Mesh;
 use pcc_evaluate::surrogate::{
-    Counts, Decision, Expansion, LeaveOut, Provenance, SelfTest, Setting, SettingValue, Surrogate, TrainedDomain,
-    Training, VerdictBasis,
+    Counts, Decision, Expansion, LeaveOut, LeftOut, Provenance, SelfTest, Setting, SettingValue, Surrogate,
+    TrainedDomain, Training, VerdictBasis,
 };
 
 fn setting(key: &str, value: SettingValue) -> Setting {
@@ -73,10 +73,20 @@ pub(super) fn surrogate(
     let whole = Mesh::whole(study.inputs.dimension());
     let mut surrogate = new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training);
     surrogate.trained_domain = TrainedDomain::of(&study.inputs, level.samples.points());
+    surrogate.left_out = left_out(evaluations, fitted);
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());
     surrogate.verdict.is_self_adjoint = evaluations.is_self_adjoint();
     surrogate
+}
+
+/// What the components miss at points of the design that are left out: those near the boundary were chosen, and do not
+/// stand for others.
+fn left_out(evaluations: &Evaluations<'_>, fitted: &[ComponentResult]) -> Option<LeftOut> {
+    let residuals = fitted.iter().map(|fit| fit.result.leave_one_out_residuals.as_ref());
+    let residuals: Vec<&Vec<f64>> = residuals.collect::<Option<_>>()?;
+    let of_design = (0..evaluations.runs().len()).filter(|&i| evaluations.is_of_design(i));
+    LeftOut::new(of_design.map(|i| residuals.iter().map(|list| list[i]).collect()).collect())
 }
 
 /// Names of the groups that came too close to other modes for derivatives at some run.
@@ -180,6 +190,7 @@ fn new<'a>(
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 0.0 },
         coverage: None,
         trained_domain: None,
+        left_out: None,
         certificates: Vec::new(),
         verdict: VerdictBasis { margin: study.spectrum.margin, ..VerdictBasis::default() },
     }

@@ -36,7 +36,7 @@ impl Section {
 }
 
 /// Names of the sections of kind 1, 2, ….
-pub(super) const SECTION_NAMES: [&str; 13] = [
+pub(super) const SECTION_NAMES: [&str; 14] = [
     "meta",
     "inputs",
     "outputs",
@@ -50,6 +50,7 @@ pub(super) const SECTION_NAMES: [&str; 13] = [
     "coverage",
     "descriptions",
     "domain",
+    "left_out",
 ];
 
 /// Kind of the section of outputs, which has two versions.
@@ -70,9 +71,12 @@ pub(super) const DESCRIPTIONS: u16 = 12;
 /// Kind of the optional section of the box that the model runs spanned.
 pub(super) const DOMAIN: u16 = 13;
 
+/// Kind of the optional section of residuals at runs left out.
+pub(super) const LEFT_OUT: u16 = 14;
+
 /// Whether readers need not understand a section.
 pub(super) fn is_optional(kind: u16) -> bool {
-    [CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN].contains(&kind)
+    [CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN, LEFT_OUT].contains(&kind)
 }
 
 /// Sections 2 to 8 and 10, those that determine what a surrogate computes.
@@ -113,6 +117,9 @@ pub(super) fn sections(document: &Document) -> Result<Vec<Section>, WriteError> 
     }
     if let Some(domain) = &document.domain {
         sections.push(section(DOMAIN, domain)?);
+    }
+    if let Some(left_out) = &document.left_out {
+        sections.push(section(LEFT_OUT, left_out)?);
     }
     sections.sort_by_key(|section| section.kind);
     Ok(sections)

@@ -1,7 +1,8 @@
 //! The binary container: magic, version, codec, length, sections, checksum. Little-endian, no holes, no trailing bytes.
 
 use super::binary::{
-    CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional, sections,
+    CERTIFICATES, COVERAGE, DESCRIPTIONS, DOMAIN, LEFT_OUT, OUTPUTS, SECTION_NAMES, VERDICT, decode_body, is_optional,
+    sections,
 };
 use super::certificates::AnyCertificates;
 use super::error::{ReadError, WriteError};
@@ -95,6 +96,7 @@ fn document(bytes: &[u8], version: (u16, u16)) -> Result<Decoded, ReadError> {
         coverage: sections.optional(COVERAGE)?,
         descriptions: sections.optional(DESCRIPTIONS)?,
         domain: sections.optional(DOMAIN)?,
+        left_out: sections.optional(LEFT_OUT)?,
     };
     Ok(Decoded { document, version, unknown_sections: sections.skipped })
 }

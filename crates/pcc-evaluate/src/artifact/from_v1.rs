@@ -3,7 +3,7 @@
 use super::error::ReadError;
 use super::inputs::close;
 use super::meaning::{ensure, is_hash, is_printable, not_finite};
-use super::{certified, descriptions, domain, inputs as section_2, v1, v2};
+use super::{certified, descriptions, domain, inputs as section_2, left_out, v1, v2};
 use crate::components::{Component, Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh, MultiIndex, Split};
 use crate::probability::inputs::{Input, InputSpace};
@@ -44,6 +44,7 @@ pub(super) fn surrogate(document: v1::Document) -> Result<Surrogate, ReadError> 
         provenance,
         coverage,
         trained_domain: domain::trained(&inputs, document.domain)?,
+        left_out: left_out::residuals(document.left_out, components, mesh.elements().len())?,
         inputs: descriptions::described(inputs, document.descriptions)?,
         outputs,
         mesh,

@@ -7,7 +7,7 @@ use super::v2;
 
 /// The first section that holds a NaN or an infinity.
 pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
-    let sections: [(&str, Vec<f64>); 11] = [
+    let sections: [(&str, Vec<f64>); 12] = [
         ("inputs", document.inputs.inputs.iter().flat_map(input).chain(dependence(&document.inputs)).collect()),
         ("outputs", document.outputs.components().flat_map(|component| [component.center, component.scale]).collect()),
         ("elements", elements(&document.elements)),
@@ -28,6 +28,7 @@ pub(super) fn not_finite(document: &Document) -> Option<&'static str> {
         ("verdict", document.verdict.iter().flat_map(verdict).collect()),
         ("coverage", document.coverage.iter().flat_map(coverage).collect()),
         ("domain", document.domain.iter().flat_map(domain).collect()),
+        ("left_out", document.left_out.iter().flat_map(|section| section.runs.iter().flatten().copied()).collect()),
     ];
     sections.into_iter().find(|(_, numbers)| numbers.iter().any(|number| !number.is_finite())).map(|(name, _)| name)
 }

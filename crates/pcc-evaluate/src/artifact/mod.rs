@@ -14,6 +14,7 @@ mod error;
 mod from_v1;
 mod inputs;
 mod json;
+mod left_out;
 mod meaning;
 #[cfg(feature = "schema")]
 mod schema;

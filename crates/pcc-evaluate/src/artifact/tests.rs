@@ -12,13 +12,17 @@ mod certificates;
 mod dependence;
 mod descriptions;
 mod domain;
+mod left_out;
 
 /// Bytes before the first section, and those of a section's header.
 const HEADER: usize = 24;
 const SECTION_HEADER: usize = 16;
 
-static SURROGATE: LazyLock<Surrogate> =
-    LazyLock::new(|| decode(include_bytes!("../../../../surrogates/clutch-r2-eigenvalues.pcc")).unwrap().surrogate);
+/// As format 1.0 has it, without what it missed at runs left out.
+static SURROGATE: LazyLock<Surrogate> = LazyLock::new(|| {
+    let file = decode(include_bytes!("../../../../surrogates/clutch-r2-eigenvalues.pcc")).unwrap();
+    Surrogate { left_out: None, ..file.surrogate }
+});
 static BYTES: LazyLock<Vec<u8>> = LazyLock::new(|| encode(&SURROGATE, Format::Binary).unwrap());
 
 /// The bytes with a change, length field and checksum made to match.

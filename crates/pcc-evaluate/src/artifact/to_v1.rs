@@ -3,7 +3,7 @@
 use super::error::WriteError;
 use super::meaning::not_finite;
 use super::version::{MAJOR, minor};
-use super::{binary, certified, descriptions, domain, inputs, v1, v2};
+use super::{binary, certified, descriptions, domain, inputs, left_out, v1, v2};
 use crate::components::{Margin, Output, OutputKind};
 use crate::polynomials::{Branch, Element, IndexSet, Mesh};
 use crate::surrogate::{Band, LeaveOut, SettingValue, StopReason, Surrogate, VerdictBasis};
@@ -40,6 +40,7 @@ pub(super) fn document(surrogate: &Surrogate) -> Result<v1::Document, WriteError
         }),
         descriptions: descriptions::section(&surrogate.inputs),
         domain: domain::section(surrogate),
+        left_out: left_out::section(surrogate),
     };
     if let Some(section) = not_finite(&document) {
         return Err(WriteError::NotFinite { section });

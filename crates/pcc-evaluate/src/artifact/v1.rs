@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::certificates::AnyCertificates;
-use super::v2::{AnyOutputs, Coverage, Descriptions, Domain, Verdict};
+use super::v2::{AnyOutputs, Coverage, Descriptions, Domain, LeftOut, Verdict};
 
 /// A whole surrogate file: the sections by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,6 +49,9 @@ pub struct Document {
     /// Section 13, if some standardized variable is not uniform. Since format 1.3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub domain: Option<Domain>,
+    /// Section 14, if runs were left out one by one. Since format 1.3.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<LeftOut>,
 }
 
 /// Version of the format.

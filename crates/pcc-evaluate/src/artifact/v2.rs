@@ -127,6 +127,16 @@ pub struct TrainedInterval {
     pub upper: f64,
 }
 
+/// Section 14, optional and outside the content id: residuals of the components at runs of the design, each by the fit
+/// without the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct LeftOut {
+    /// One list per run, 200 at most: value less prediction of each component by id, in its unit.
+    pub runs: Vec<Vec<f64>>,
+}
+
 /// Section 3, version 2.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]

@@ -18,7 +18,7 @@ pub const MAJOR: u16 = 1;
 ///   the search for an expansion ended that full expansions have.
 /// * 3: section 3 in version 2, with groups of eigenvalues that are closed under conjugation; section 10; section 9 in
 ///   version 2, with bounds of all shares and strata; a search that ended because errors no longer fell; sections 11
-///   to 13; laws other than the uniform one in section 2, and dependence.
+///   to 14; laws other than the uniform one in section 2, and dependence.
 pub const MINOR: u16 = 3;
 
 /// The lowest minor version that knows everything `surrogate` uses: the one it is written with, so that older readers
@@ -33,7 +33,8 @@ pub(super) fn minor(surrogate: &Surrogate) -> u16 {
         surrogate.certificates.iter().any(|one| one.marginal.is_some() || one.failed > 0 || one.strata.is_some());
     let has_stalled = surrogate.expansions.iter().any(|expansion| expansion.stop == StopReason::Stalled);
     let has_verdict = surrogate.has_real_eigenvalues() || surrogate.verdict != VerdictBasis::default();
-    let has_more_sections = surrogate.coverage.is_some() || surrogate.inputs.has_descriptions();
+    let has_more_sections =
+        surrogate.coverage.is_some() || surrogate.inputs.has_descriptions() || surrogate.left_out.is_some();
     let is_uniform = |input: &Input| matches!(input.marginal, Marginal::Uniform(_));
     let has_laws = !surrogate.inputs.inputs().iter().all(is_uniform);
     let has_dependence = surrogate.inputs.dependence().is_some();

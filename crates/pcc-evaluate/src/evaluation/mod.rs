@@ -13,6 +13,7 @@ mod test_surrogates;
 
 pub use analysis::critical::{CRITICAL_LEVELS, CriticalValues, critical_values, critical_values_in};
 pub use analysis::crossings::Crossing;
+pub use analysis::intervals::{IntervalLevel, PointIntervals, point_intervals};
 pub use analysis::self_test::self_test_difference;
 pub use analysis::sensitivity::{
     Estimate, SENSITIVITY_LEVEL, Sensitivities, Sensitivity, sensitivities, sensitivities_in,

@@ -72,6 +72,7 @@ pub fn surrogate(inputs: InputSpace, growth_rates: Vec<Expansion>) -> Surrogate 
         decision: Decision::default(),
         self_test: SelfTest { points: Vec::new(), components: Vec::new(), max_re: Vec::new(), tolerance: 1e-9 },
         coverage: None,
+        left_out: None,
         trained_domain: None,
         certificates: Vec::new(),
         verdict: VerdictBasis::default(),

@@ -5,6 +5,7 @@ mod analysis;
 mod certificate;
 mod coverage;
 mod evaluate;
+mod left_out;
 mod records;
 mod sobol;
 mod trained_domain;
@@ -16,6 +17,7 @@ pub use certificate::{
     Withheld,
 };
 pub use coverage::Coverage;
+pub use left_out::LeftOut;
 pub use records::{
     Band, Counts, Decision, Expansion, LeaveOut, Provenance, Quantile, SelfTest, Setting, SettingValue, StopReason,
     Training, VerdictBasis,
@@ -58,6 +60,8 @@ pub struct Surrogate {
     pub coverage: Option<Coverage>,
     /// The box that the model runs spanned; `None` if they fill the laws of all inputs, and if it is not known.
     pub trained_domain: Option<TrainedDomain>,
+    /// What components miss at runs left out; `None` if none were left out, and if the file does not say.
+    pub left_out: Option<LeftOut>,
 }
 
 impl Surrogate {

@@ -5,6 +5,7 @@ pub(super) mod correlation;
 pub(super) mod critical;
 pub(super) mod crossings;
 mod domain;
+pub(super) mod intervals;
 pub(super) mod self_test;
 pub(super) mod sensitivity;
 pub(super) mod shapley;
