@@ -112,6 +112,30 @@ fn certificates_are_the_same_on_any_number_of_threads() {
     assert!(one == on(2) && one == on(8));
 }
 
+/// Of a surrogate that calls too much stable, runs inside say so; the assumption takes all of it for stable.
+#[test]
+fn the_second_line_is_never_weaker_than_the_first() {
+    let study = crate::support::invariants_study(2);
+    let right = built("clutch-r2");
+    let mut cautious = right.clone();
+    let mean = right.components().into_iter().find(|component| component.name.starts_with("re_s")).unwrap();
+    cautious.expansions[mean.id].coefficients[0] -= 3.0 / mean.scale;
+    let mut withheld = 0;
+    for (surrogate, runs, seed) in [(right, 30, 1), (right, 300, 2), (&cautious, 300, 3), (&cautious, 100, 4)] {
+        let certificate = certify_with_model(surrogate, &study, runs, seed, LEVEL, &Silent).unwrap();
+        let strata = certificate.strata.unwrap();
+        match strata.if_errors_fall_off.bound {
+            AssumedBound::Upper(upper) => assert!(upper < strata.rare_upper, "{upper}, {}", strata.rare_upper),
+            AssumedBound::Withheld(reason) => {
+                assert_eq!(reason, Withheld::NoLower, "{runs} runs, seed {seed}");
+                withheld += 1;
+            }
+        }
+    }
+    println!("{withheld} withheld");
+    assert_eq!(withheld, 2, "where it would be weaker");
+}
+
 /// Half of all cases diverge, and the surrogate knows of none: its slow eigenvalue is moved away.
 #[test]
 fn a_surrogate_that_is_wrong_far_from_its_boundary_is_contradicted_and_has_no_second_line() {

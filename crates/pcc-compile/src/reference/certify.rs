@@ -187,11 +187,14 @@ impl Outcomes {
         let assumed = match () {
             () if has_marginal => Err(Withheld::Marginal),
             () if all.failed() > 0 => Err(Withheld::FailedRuns),
-            () => far.upper(strata.rare(), strata.layer(), of_layer, side_level).map_err(|reason| match reason {
-                NoBound::NoRuns => Withheld::NoRuns,
-                NoBound::RareFarAway => Withheld::RareFarAway,
-                NoBound::NoThinning => Withheld::NoThinning,
-            }),
+            () => match far.upper(strata.rare(), strata.layer(), of_layer, side_level) {
+                // An assumption that gains nothing is not made.
+                Ok(upper) if upper >= bound.upper => Err(Withheld::NoLower),
+                Ok(upper) => Ok(upper),
+                Err(NoBound::NoRuns) => Err(Withheld::NoRuns),
+                Err(NoBound::RareFarAway) => Err(Withheld::RareFarAway),
+                Err(NoBound::NoThinning) => Err(Withheld::NoThinning),
+            },
         };
         let runs = |StratumCounts { runs, rare, failed }: StratumCounts| StratumRuns { runs, rare, failed };
         let tail = |Thinning { error, runs, twice }: Thinning| ErrorTail { error, runs, twice };

@@ -163,6 +163,8 @@ pub enum Withheld {
     RareFarAway,
     /// Large errors are too frequent.
     NoThinning,
+    /// The verified bound is as low.
+    NoLower,
 }
 
 /// Bounds of the marginal and of the unstable share.

@@ -68,6 +68,7 @@ fn stored_strata(strata: &Strata) -> wire::Strata {
                 Withheld::NoRuns => wire::Withheld::NoRuns,
                 Withheld::RareFarAway => wire::Withheld::RareFarAway,
                 Withheld::NoThinning => wire::Withheld::NoThinning,
+                Withheld::NoLower => wire::Withheld::NoLower,
             }),
         },
     }
@@ -182,6 +183,7 @@ fn strata(strata: wire::Strata) -> Strata {
                     wire::Withheld::NoRuns => Withheld::NoRuns,
                     wire::Withheld::RareFarAway => Withheld::RareFarAway,
                     wire::Withheld::NoThinning => Withheld::NoThinning,
+                    wire::Withheld::NoLower => Withheld::NoLower,
                 }),
             },
         },

@@ -188,6 +188,8 @@ pub enum Withheld {
     RareFarAway,
     /// Large errors are too frequent for the assumption.
     NoThinning,
+    /// The verified bound is as low: an assumption would gain nothing.
+    NoLower,
 }
 
 impl AssumedBound {
@@ -209,6 +211,7 @@ impl Withheld {
             Self::NoRuns => "no run lies outside the layer at the boundary",
             Self::RareFarAway => "a run far from the boundary was on its other side",
             Self::NoThinning => "large errors are too frequent",
+            Self::NoLower => "it is not below the verified bound",
         }
     }
 }
