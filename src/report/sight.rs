@@ -113,14 +113,19 @@ impl Sight {
 
     /// What to know before trusting the surrogate.
     pub fn warning(self) -> Option<String> {
-        self.is_unknown().then(|| {
-            format!(
-                "the system is {}: fewer than 3 tell nothing of the error; let the build make more with \
-                 design.maximum, or bound it with pcc certify",
-                self.words()
-            )
-        })
+        let Self::Unknown { runs, .. } = self else { return None };
+        Some(format!(
+            "the system is {}: fewer than 3 tell nothing of the error; {}, or bound it with pcc certify",
+            self.words(),
+            more_runs(runs)
+        ))
     }
+}
+
+/// How a build that ended after so many runs is made to go on. It may have ended before `design.maximum`: a study that
+/// does not say how many runs it is worth has no build that looks for what is rare for long.
+pub(super) fn more_runs(runs: u64) -> String {
+    format!("let the build make more, as with design.maximum = {}", 2 * runs)
 }
 
 /// Two digits, rounded up, but for what rounding adds.

@@ -11,11 +11,11 @@ use serde_json::Value;
 use std::fs;
 
 /// x² + y² on the unit square exceeds this in 0.672 % of it: 1 − √(R² − 1) − R² (π/4 − arccos(1/R)).
-const CORNER: f64 = 1.7771465257001167;
+pub const CORNER: f64 = 1.7771465257001167;
 const SHARE: f64 = 0.00672;
 
 /// One mode that is unstable where growth, in 1/s, is positive.
-fn one_mode(growth: &str) -> Study {
+pub fn one_mode(growth: &str) -> Study {
     Study::from_toml(&format!(
         "format = 1\nname = \"corner\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nC = [[\"-2 * ({growth})\"]]\nK = \
          [[100]]\n[inputs]\nx = {{ distribution = \"uniform\", lower = 0.0, upper = 1.0 }}\ny = {{ distribution = \
@@ -165,6 +165,38 @@ fn an_undamped_chain_is_marginal_with_no_runs_for_it() {
     assert_eq!(surrogate.training.counts.direct_computations, 17, "as by the estimate alone");
     let damped = build(&chain("C = { diagonal = [0.1, 0.1, 0.1] }\n"));
     assert!((number(&damped, "nearest_excess") + 0.05).abs() < 1e-6);
+}
+
+/// A build that does not see the rarer side says how many runs to allow; whoever does so comes to an answer.
+#[test]
+fn the_advice_of_a_blind_build_leads_to_an_answer() {
+    let study = |maximum: &str| {
+        format!(
+            "format = 1\nname = \"strip\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nC = [[\"-2 * (exp(x) - exp(0.97) + \
+             0.01 * y)\"]]\nK = [[100]]\n[inputs]\nx = {{ distribution = \"uniform\", lower = 0.0, upper = 1.0 }}\ny = {{ \
+             distribution = \"uniform\", lower = -1.0, upper = 1.0 }}\n[fit]\nenrich = \"none\"\n[design]\n{maximum}"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut maximum = String::new();
+    for round in 0..5 {
+        fs::write(folder.path().join("strip.toml"), study(&maximum)).unwrap();
+        let built = output(folder.path(), &["build", "strip.toml", "-o", "strip.pcc", "--quiet", "--json"]);
+        let built: Value = serde_json::from_str(&built).unwrap();
+        let runs = built["direct_computations"].as_u64().unwrap();
+        let warnings = built["warnings"].to_string();
+        println!("{maximum:?}: {runs} runs, {warnings}");
+        let Some((_, advice)) = warnings.split_once("as with design.maximum = ") else {
+            assert!(round > 0, "the first build is blind: {built}");
+            let share = built["smallest_share"]["share"].as_f64().unwrap();
+            assert!((share - 0.03).abs() < 0.002, "{share}");
+            return;
+        };
+        let advice: u64 = advice.split(',').next().unwrap().parse().unwrap();
+        assert!(advice > runs, "{advice} after {runs}");
+        maximum = format!("maximum = {advice}\n");
+    }
+    panic!("five times as advised, and still blind");
 }
 
 /// Where no more runs are allowed than two levels have, nobody has looked near the boundary.
