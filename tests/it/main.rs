@@ -16,6 +16,7 @@ mod described;
 mod determinism;
 mod documents;
 mod endings;
+mod enrichment;
 mod evaluation;
 mod extrapolation;
 mod field;
