@@ -203,8 +203,9 @@ impl<'a> PointsFile<'a> {
     }
 
     /// Evaluates all points in groups and writes `path`: the point, re_k and im_k of each mode (and re_k_b, where it
-    /// can have two real eigenvalues), the other real eigenvalues, max_re, stable, verdict; with the ends of intervals
-    /// after each number they are of. Returns the number of points and of stable ones. Nothing is written if anything fails.
+    /// can have two real eigenvalues), the other real eigenvalues, max_re, stable, verdict; after each number the ends
+    /// of its interval, if it has one. Returns the number of points and of stable ones. Nothing is written if anything
+    /// fails.
     pub fn evaluate(
         mut self,
         path: &Path,

@@ -40,7 +40,7 @@ pub struct CompareReport {
     pub contradicts_surrogate: bool,
     /// Relative error of the share; null if the model is never stable and the surrogate sometimes is.
     pub relative_error_percent: Option<f64>,
-    /// The smaller of the stable and the unstable share, of those that occur.
+    /// The smallest of the stable and the unstable share and those that `fit.shares` names, of those that occur.
     pub smallest_share: ComparedShare,
     /// Points on whose stability the two disagree.
     pub misclassified_percent: f64,
@@ -125,7 +125,7 @@ impl CompareReport {
             proportion_surrogate: comparison.proportion_surrogate(),
             contradicts_surrogate: contradicts(surrogate, comparison),
             relative_error_percent: comparison.relative_error_percent(),
-            smallest_share: ComparedShare::of(comparison),
+            smallest_share: ComparedShare::of(surrogate, comparison),
             misclassified_percent: comparison.misclassified_percent(),
             marginal_model: comparison.marginal()[0],
             marginal_surrogate: comparison.marginal()[1],

@@ -1,19 +1,24 @@
-//! The smaller of the stable and the unstable share: what errors are told of, since the larger one hides them.
+//! The smallest of the stable and the unstable share and those that a study names: what errors are told of, since
+//! larger ones hide them.
 
 use super::confidence::{is_of_modes_left_out, known_error};
 use super::numbers::{share, significant};
+use super::sight::more_runs;
 use pcc_compile::reference::Comparison;
+use pcc_compile::study::NAMED_SHARES;
+use pcc_evaluate::components::Verdict;
+use pcc_evaluate::foundation::plural;
 use pcc_evaluate::surrogate::{SettingValue, Surrogate};
 use serde::Serialize;
 
 /// Points at which a build judges a share, at least: errors below one of them are not seen.
 const JUDGED_POINTS: f64 = 50_000.0;
 
-/// The smaller of the stable and the unstable share as a build has judged it.
+/// The smallest share as a build has judged it: of stable, unstable, and those that `fit.shares` names.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SmallestShare {
-    /// Its name: stable, unstable, or not unstable where nothing is damped.
+    /// Its name: stable, unstable, not unstable where nothing is damped, marginal, flutter or divergence.
     pub name: &'static str,
     /// Its value.
     pub share: f64,
@@ -28,12 +33,35 @@ pub struct SmallestShare {
 }
 
 impl SmallestShare {
-    /// What the file says; `None` of files that do not say which share was judged.
+    /// The smallest that occurs; `None` of files that do not say which share was judged.
     pub fn of(surrogate: &Surrogate) -> Option<Self> {
-        let number = |key: &str| {
-            let setting = surrogate.training.settings.iter().find(|setting| setting.key == key)?;
-            if let SettingValue::Number(value) = setting.value { Some(value) } else { None }
-        };
+        let smaller = |one: Self, other: Self| if one.share == 0.0 || other.share < one.share { other } else { one };
+        Self::all(surrogate).into_iter().reduce(smaller)
+    }
+
+    /// What the file says of the smaller of stable and unstable, and of those that the study names and that occur.
+    pub(super) fn all(surrogate: &Surrogate) -> Vec<Self> {
+        let named = named(surrogate).into_iter().filter_map(|verdict| Self::of_verdict(surrogate, verdict));
+        Self::of_side(surrogate).into_iter().chain(named).collect()
+    }
+
+    /// Of a share that the study names, if it occurs.
+    fn of_verdict(surrogate: &Surrogate, verdict: Verdict) -> Option<Self> {
+        let name = verdict.name();
+        let share = number(surrogate, &format!("{name}_share")).filter(|&share| share > 0.0)?;
+        let error = number(surrogate, &format!("{name}_share_error"));
+        Some(Self {
+            name,
+            share,
+            estimated_error_percent: error.map(|error| 100.0 * error / share),
+            error,
+            tolerance: number(surrogate, "proportion_tolerance"),
+        })
+    }
+
+    /// The smaller of stable and unstable.
+    fn of_side(surrogate: &Surrogate) -> Option<Self> {
+        let number = |key: &str| number(surrogate, key);
         let not_unstable = number("stable_share")?;
         let (name, share) = match (not_unstable <= 0.5, surrogate.is_undamped()) {
             (true, true) => ("not unstable", not_unstable),
@@ -72,6 +100,38 @@ impl SmallestShare {
     }
 }
 
+fn value<'s>(surrogate: &'s Surrogate, key: &str) -> Option<&'s SettingValue> {
+    surrogate.training.settings.iter().find(|setting| setting.key == key).map(|setting| &setting.value)
+}
+
+fn number(surrogate: &Surrogate, key: &str) -> Option<f64> {
+    if let SettingValue::Number(number) = value(surrogate, key)? { Some(*number) } else { None }
+}
+
+/// The shares that the study of a surrogate names.
+fn named(surrogate: &Surrogate) -> Vec<Verdict> {
+    let Some(SettingValue::Text(names)) = value(surrogate, "shares") else { return Vec::new() };
+    NAMED_SHARES.into_iter().filter(|verdict| names.split(' ').any(|name| name == verdict.name())).collect()
+}
+
+/// What to know of shares that too few runs are of, or too few are not.
+pub(super) fn hardly_seen(surrogate: &Surrogate) -> Vec<String> {
+    let counts = surrogate.training.counts;
+    let answered = counts.direct_computations.saturating_sub(counts.failed);
+    let runs = plural(answered as usize, "model run");
+    let of = |verdict: Verdict| {
+        let name = verdict.name();
+        let Some(SettingValue::Integer(seen)) = value(surrogate, &format!("{name}_runs")) else { return None };
+        let share = share(number(surrogate, &format!("{name}_share"))?);
+        Some(format!(
+            "the {name} share, {share} by the surrogate, is not known: {seen} of {runs} were of it; fewer than 3 on either \
+             side tell nothing of its error; {}",
+            more_runs(answered)
+        ))
+    };
+    named(surrogate).into_iter().filter_map(of).collect()
+}
+
 /// The estimated error of a surrogate in words; `None` if it is unknown.
 pub(super) fn estimated_error(surrogate: &Surrogate) -> Option<String> {
     let relative = 100.0 * surrogate.decision.proportion_error?;
@@ -90,11 +150,12 @@ pub(super) fn estimated_error(surrogate: &Surrogate) -> Option<String> {
     Some(format!("{} % {of}, {by}", significant(percent, 2)))
 }
 
-/// The smaller of the stable and the unstable share, of those that occur, by model and surrogate at the same points.
+/// The smallest of the stable and the unstable share and those that `fit.shares` names, of those that occur, by model
+/// and surrogate at the same points.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComparedShare {
-    /// Its name: stable or unstable.
+    /// Its name: stable, unstable, marginal, flutter or divergence.
     pub name: &'static str,
     /// By the model.
     pub model: f64,
@@ -105,7 +166,19 @@ pub struct ComparedShare {
 }
 
 impl ComparedShare {
-    pub(super) fn of(comparison: &Comparison) -> Self {
+    pub(super) fn of(surrogate: &Surrogate, comparison: &Comparison) -> Self {
+        let named = named(surrogate).into_iter().map(|verdict| {
+            let [model, surrogate] = comparison.shares_of(verdict);
+            let relative_error_percent = comparison.relative_error_of_verdict_percent(verdict);
+            Self { name: verdict.name(), model, surrogate, relative_error_percent }
+        });
+        let occurring = named.filter(|share| share.model > 0.0 || share.surrogate > 0.0);
+        let smaller = |one: Self, other: Self| if other.model < one.model { other } else { one };
+        occurring.fold(Self::of_side(comparison), smaller)
+    }
+
+    /// The smaller of stable and unstable.
+    fn of_side(comparison: &Comparison) -> Self {
         let stable = Self {
             name: "stable",
             model: comparison.proportion_model(),

@@ -4,7 +4,7 @@ use super::build::is_quadrature;
 use super::fit::FitReport;
 use super::numbers::significant;
 use super::sight::Sight;
-use super::smallest_share::SmallestShare;
+use super::smallest_share::{SmallestShare, hardly_seen};
 use pcc_evaluate::foundation::count;
 use pcc_evaluate::surrogate::{Setting, SettingValue, StopReason, Surrogate};
 
@@ -167,11 +167,13 @@ impl FitReport {
         warnings.extend(reason.map(|reason| ended(reason, surrogate)));
         let sight = Sight::of(surrogate);
         warnings.extend(sight.and_then(Sight::warning));
+        warnings.extend(hardly_seen(surrogate));
         let smallest = SmallestShare::of(surrogate);
         match (surrogate.decision.proportion_error, tolerance) {
             _ if sight.is_some() => {}
             (Some(_), _) if unlisted.is_none() && smallest.is_some() => {
-                warnings.extend(smallest.filter(SmallestShare::is_off).and_then(|share| share.warning()));
+                let off = SmallestShare::all(surrogate).into_iter().filter(SmallestShare::is_off);
+                warnings.extend(off.filter_map(|share| share.warning()));
             }
             (Some(error), tolerance) if unlisted.is_none() && error > tolerance.unwrap_or(LARGE_ERROR) => warnings.push(format!(
                 "the proportion may be off by {} % of itself; if it is very small, that is how well it can be judged; \

@@ -32,6 +32,7 @@ mod laws;
 mod layers;
 mod matrices;
 mod measured_inputs;
+mod named_shares;
 mod openturns;
 mod overwriting;
 mod programs;

@@ -40,7 +40,8 @@ pub(in crate::cli) struct Options {
     #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed())]
     pub seed: u64,
 
-    /// Exit with code 1 if the relative error of the smaller of the stable and unstable shares is larger
+    /// Exit with code 1 if the relative error of the smallest share is larger, of stable, unstable and those that
+    /// fit.shares names
     #[arg(long, value_name = "PERCENT", value_parser = percentage, allow_negative_numbers = true)]
     pub max_error: Option<f64>,
 

@@ -65,8 +65,8 @@ pub(in crate::cli) struct Options {
     #[command(flatten)]
     pub given: PointsOptions,
 
-    /// Beside each eigenvalue and max_re at these points, its interval at this level, like 0.9: columns named _lower and
-    /// _upper, from what the surrogate missed at model runs left out
+    /// Beside each eigenvalue and max_re at these points, its interval at this level, like 0.9: columns named _lower
+    /// and _upper, from what the surrogate missed at model runs left out
     #[arg(long, help_heading = "Points instead of samples", value_name = "LEVEL", requires = "points")]
     pub interval: Option<IntervalLevel>,
 

@@ -17,11 +17,12 @@
 //!
 //! where k is the effective number of residuals, of which few may all be small by chance, and T the number of points:
 //! shares below 1/T are not seen. (That part is reported, but no reason for more runs.) Where all else is small enough,
-//! T grows until a thousand points lie on the rarer side, or as many are evaluated as a few seconds allow. The change
-//! between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is the mean |Δp| of this level and m′ that of
-//! the one before: of a difference of two independent errors of these sizes, this is the share of the smaller one. And
-//! f is the share of runs that the model itself calls otherwise than the modes the surrogate carries: modes left out,
-//! or real eigenvalues. More runs do not lower f, so the build does not ask for them.
+//! or would be but for less than one point, T grows until a thousand points lie on the rarer side, or as many are
+//! evaluated as a few seconds allow. The change between the nested levels gives δ = |p − p′| m²/(m² + m′²), where m is
+//! the mean |Δp| of this level and m′ that of the one before: of a difference of two independent errors of these sizes,
+//! this is the share of the smaller one. And f is the share of runs that the model itself calls otherwise than the
+//! modes the surrogate carries: modes left out, or real eigenvalues. More runs do not lower f, so the build does not
+//! ask for them.
 //!
 //! All of this supposes fits that are good: of a poor one, the points may all lie on one side whatever residual is added.
 //! Where more runs are misjudged by the fit without them than ε explains, their share is an error that counts, too.
@@ -32,13 +33,16 @@
 //! truth over seeds and sizes: the truth is a half to three quarters of the estimate in the median and seldom more than
 //! three times it. Where errors all point the same way, the assumption of independence fails and it can be more.
 
-use super::blindness::{Groups, Sight, unstable_runs};
+use super::blindness::{Groups, unstable_runs};
 use super::judged_points::{POINTS, at_judged_points, points_for};
-use super::trials::{Judge, Shares, is_not_unstable, not_unstable};
+use super::judgement::{JudgedShare, Judgement};
+use super::named_shares::NamedShare;
+use super::near_boundary::zone_share;
+use super::trials::{Class, Judge, Shares, is_not_unstable};
 use super::undecided::{is_chance, misjudged, undecided};
 use crate::campaign::Run;
 use crate::fitting::fit::Fitted;
-use pcc_evaluate::components::spectral_abscissa;
+use pcc_evaluate::components::{Verdict, spectral_abscissa};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::surrogate::{Decision, Quantile, Surrogate};
 
@@ -65,13 +69,14 @@ const SIGNIFICANT: f64 = 4.0;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Previous {
     surrogate: Surrogate,
-    at: At,
+    /// One per class.
+    at: Vec<At>,
 }
 
 /// What is compared between levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct At {
-    /// Share of points that are not unstable.
+    /// Share of points of the class.
     proportion: f64,
     /// Mean |Δp| by residuals that took part in the fit.
     mean_change: f64,
@@ -85,80 +90,17 @@ pub(super) struct Before<'a> {
     pub is_regrouped: bool,
 }
 
-/// A share that was judged.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct JudgedShare {
-    /// The share p of points that are not unstable.
-    pub not_unstable: f64,
-    /// Number of points T.
-    pub points: usize,
-}
-
-impl JudgedShare {
-    /// √(p (1 − p)), which errors are compared with: of the rarer side, whichever it is, they are √p of it or less. A
-    /// share that is not seen is below 1/T.
-    pub fn deviation(&self) -> f64 {
-        let p = self.not_unstable;
-        (p * (1.0 - p)).max((self.points as f64).recip()).sqrt()
-    }
-
-    /// What the file gives errors relative to: the share that is not unstable, or all points where it is zero.
-    pub fn reference(&self) -> f64 {
-        if self.not_unstable > 0.0 { self.not_unstable } else { 1.0 }
-    }
-}
-
-/// What is known of a surrogate's decision.
-#[derive(Default)]
-pub(super) struct Judgement {
-    /// What is stored.
-    pub decision: Decision,
-    /// Number of runs whose stability the carried modes do not decide as the model does.
-    pub unlisted: u64,
-    /// The share that is not unstable, if points were judged.
-    pub share: Option<JudgedShare>,
-    /// Its estimated error, in points of probability.
-    pub error: Option<f64>,
-    /// The same without the parts that more runs do not lower, or are not worth.
-    pub reducible_error: Option<f64>,
-    /// Whether more runs are undecided than so small an error explains.
-    pub is_doubtful: bool,
-    /// What the runs have seen, if they were left out one by one.
-    pub sight: Option<Sight>,
-    /// The excess at the judged points, if the study asks for an error.
-    pub excess: Vec<f64>,
-    /// For the next level.
-    pub previous: Option<Previous>,
-}
-
-impl Judgement {
-    /// Whether the share is known to this tolerance: error ≤ tol √(p (1 − p)). Of a blind level it is not.
-    pub fn is_within(&self, tolerance: f64) -> bool {
-        !self.is_blind() && self.would_be_within(Some(tolerance))
-    }
-
-    /// The same of any level.
-    pub fn would_be_within(&self, tolerance: Option<f64>) -> bool {
-        let Some((share, tolerance)) = self.share.zip(tolerance) else { return false };
-        let small = tolerance * share.deviation();
-        !self.is_doubtful && self.reducible_error.is_some_and(|error| error <= small)
-    }
-
-    /// Whether too few runs lie on the rarer side for an estimate.
-    pub fn is_blind(&self) -> bool {
-        self.sight.is_some_and(|sight| sight.is_blind())
-    }
-}
-
 /// What a level is judged for.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Purpose {
+pub(super) struct Purpose<'a> {
     /// The error that is asked for, relative to √(p (1 − p)).
     pub tolerance: Option<f64>,
     /// Whether no level follows.
     pub is_last: bool,
     /// Whether the share is known to be 0 or 1 if this level finds nothing near the boundary.
     pub is_final: bool,
+    /// Verdicts whose shares the tolerance is of as well.
+    pub shares: &'a [Verdict],
 }
 
 /// A level to be judged.
@@ -177,7 +119,7 @@ pub(super) struct Judged<'a> {
 pub(super) fn judge(
     level: Judged<'_>,
     before: Option<Before<'_>>,
-    purpose: Purpose,
+    purpose: Purpose<'_>,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
     let Judged { surrogate, fitted, values, runs, of_design } = level;
@@ -198,15 +140,21 @@ pub(super) fn judge(
     let residuals = Residuals { seen, blind };
     let forgotten = unlisted as f64 / runs.len() as f64;
     let judge = Judge::new(surrogate, runs, POINTS, observer)?;
-    let mut found = Found::by(&judge, &residuals, before, forgotten)?;
-    let undecided = undecided(surrogate, values, &residuals.seen, runs);
-    let is_chance_of = |count, runs: usize| is_chance(count, BOTH_SIDES * found.at.mean_change * runs as f64);
-    let is_doubtful = !is_chance_of(undecided, runs.len());
-    let misjudged = misjudged(surrogate, values, &residuals.seen, runs, &of_design);
-    let misjudged = match is_chance_of(misjudged, of_design.len()) {
-        true => 0.0,
-        false => misjudged as f64 / of_design.len() as f64,
+    let classes = Class::all(purpose.shares);
+    let find = |judge: &Judge<'_>| -> Result<Vec<Found>, Interrupted> {
+        let each = classes.iter().enumerate();
+        each.map(|(number, &class)| Found::by(judge, (number, class), &residuals, before, forgotten)).collect()
     };
+    let mut found = find(&judge)?;
+    let undecided = undecided(surrogate, values, &residuals.seen, runs);
+    // A change that no point shows is below one of all.
+    let change = found[0].at.mean_change.max(((POINTS * runs.len()) as f64).recip());
+    let is_chance_of = |count, runs: f64| is_chance(count, BOTH_SIDES * change * runs);
+    let (random, chosen) = (of_design.len() as f64, (runs.len() - of_design.len()) as f64);
+    let at_random = random + chosen / zone_share(surrogate, judge.rarest(&classes[..1]));
+    let is_doubtful = !is_chance_of(undecided, at_random);
+    let misjudged = misjudged(surrogate, values, &residuals.seen, runs, &of_design);
+    let misjudged = if is_chance_of(misjudged, random) { 0.0 } else { misjudged as f64 / random };
     if sight.is_blind() && sight.rare() == 0 {
         let is_stable = sight.unstable == 0;
         sight.points = judge.points();
@@ -217,21 +165,28 @@ pub(super) fn judge(
             sight.clearance = groups.clearance(surrogate, &block, is_stable);
         }
     }
-    let mut judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful, misjudged) };
-    let not_unstable = judge.not_unstable();
-    let points = points_for(surrogate, not_unstable.min(POINTS - not_unstable));
-    if points > POINTS && purpose.tolerance.is_some_and(|tolerance| judgement.is_within(tolerance)) {
+    let judged = |found: &[Found]| Judgement {
+        sight: Some(sight),
+        ..judgement(found, purpose.shares, runs, is_doubtful).with_misjudged(misjudged)
+    };
+    let mut judgement = judged(&found);
+    let points = points_for(surrogate, judge.rarest(&classes));
+    // The next level compares the share of these points.
+    let mut at: Vec<At> = found.iter().map(|found| found.at).collect();
+    if points > POINTS && purpose.tolerance.is_some_and(|tolerance| judgement.may_be_within(tolerance)) {
         let judge = Judge::new(surrogate, runs, points, observer)?;
-        found = Found::by(&judge, &residuals, before, forgotten)?;
-        judgement = Judgement { sight: Some(sight), ..found.judgement(is_doubtful, misjudged) };
+        found = find(&judge)?;
+        at.iter_mut().zip(&found).for_each(|(at, found)| at.mean_change = found.at.mean_change);
+        judgement = judged(&found);
     }
     if purpose.tolerance.is_some() {
         judgement.excess.clone_from(&judge.block().excess);
+        judgement.rarer = judge.rarer(judgement.missed());
     }
-    let share = found.share;
+    let share = found[0].share;
     let proportion_error = judgement.error.map(|error| error / share.reference()).filter(|error| error.is_finite());
     let decision = Decision { max_re_residuals, proportion_error };
-    let previous = Some(Previous { surrogate: surrogate.clone(), at: found.at });
+    let previous = Some(Previous { surrogate: surrogate.clone(), at });
     Ok(Judgement { decision, unlisted, previous, ..judgement })
 }
 
@@ -252,25 +207,26 @@ struct Found {
 impl Found {
     fn by(
         judge: &Judge<'_>,
+        (number, class): (usize, Class),
         residuals: &Residuals,
         before: Option<Before<'_>>,
         forgotten: f64,
     ) -> Result<Self, Interrupted> {
         let Residuals { seen, blind } = residuals;
-        let by_seen = judge.shares(seen, 0)?;
-        let not_unstable = judge.not_unstable() as f64 / judge.points() as f64;
-        let at = At { proportion: not_unstable, mean_change: by_seen.mean_of(f64::abs) };
+        let by_seen = judge.shares(class, seen, 0)?;
+        let value = judge.count(class) as f64 / judge.points() as f64;
+        let at = At { proportion: value, mean_change: by_seen.mean_of(f64::abs) };
         let unseen = (judge.points() as f64).recip();
-        let former = before.map(|before| judge.at_same_points(before.previous)).transpose()?;
+        let former = before.map(|before| judge.at_same_points(before.previous, number, class)).transpose()?;
         let (reducible_error, error) = match (before, former) {
             (Some(Before { is_regrouped: false, .. }), Some(former)) if blind.len() >= LEAST_BLIND.min(seen.len()) => {
-                let by_blind = judge.shares(blind, seen.len() - blind.len())?;
+                let by_blind = judge.shares(class, blind, seen.len() - blind.len())?;
                 let error = |unseen| Some(error_of_share(&by_blind, judge.effective_runs(), former, at, unseen));
                 (error(0.0), error(unseen))
             }
             (Some(_), Some(former)) => {
                 // Residuals that flatter, and all of the change between the levels.
-                let honest = judge.shares(&honest_residuals(seen, blind), 0)?;
+                let honest = judge.shares(class, &honest_residuals(seen, blind), 0)?;
                 let change = at.proportion - former.proportion;
                 (None, Some(error_of_share(&honest, judge.effective_runs(), at, at, unseen).hypot(change)))
             }
@@ -280,25 +236,31 @@ impl Found {
             None if forgotten == 0.0 => None,
             error => Some(error.unwrap_or(0.0).hypot(forgotten)),
         };
-        let share = JudgedShare { not_unstable, points: judge.points() };
+        let share = JudgedShare { value, points: judge.points() };
         Ok(Self { share, at, error, reducible_error })
     }
+}
 
-    fn judgement(&self, is_doubtful: bool, misjudged: f64) -> Judgement {
-        let Self { share, .. } = *self;
-        let [error, reducible_error] = [self.error, self.reducible_error].map(|error| Some(error?.hypot(misjudged)));
-        Judgement { share: Some(share), error, reducible_error, is_doubtful, ..Judgement::default() }
-    }
+/// What was found of the first class, and of those that the study names.
+fn judgement(found: &[Found], named: &[Verdict], runs: &[Run], is_doubtful: bool) -> Judgement {
+    let own = |(&verdict, found): (&Verdict, &Found)| {
+        let of_it = runs.iter().filter(|run| run.spectrum.top().verdict() == verdict).count();
+        let Found { share, error, reducible_error, .. } = *found;
+        NamedShare { verdict, share, runs: [of_it, runs.len() - of_it], error, reducible_error }
+    };
+    let named = named.iter().zip(&found[1..]).map(own).collect();
+    let Found { share, error, reducible_error, .. } = found[0];
+    Judgement { share: Some(share), error, reducible_error, is_doubtful, named, ..Judgement::default() }
 }
 
 impl Judge<'_> {
     /// What the level before says at these points.
-    fn at_same_points(&self, previous: &Previous) -> Result<At, Interrupted> {
+    fn at_same_points(&self, previous: &Previous, number: usize, class: Class) -> Result<At, Interrupted> {
         if self.points() == POINTS {
-            return Ok(previous.at);
+            return Ok(previous.at[number]);
         }
         let block = at_judged_points(&previous.surrogate, self.points(), self.observer())?;
-        Ok(At { proportion: not_unstable(&block) as f64 / self.points() as f64, ..previous.at })
+        Ok(At { proportion: class.count(&block) as f64 / self.points() as f64, ..previous.at[number] })
     }
 }
 
@@ -412,30 +374,5 @@ mod tests {
         assert!((error_of_share(&none, 10.0, previous, now, UNSEEN) - 0.02 * 0.1).abs() < UNSEEN);
         let resolved = error_of_share(&none, 10.0, now, now, UNSEEN);
         assert!(resolved > 0.0 && resolved < UNSEEN, "nothing seen is not nothing there");
-    }
-
-    /// A share with this estimated error.
-    fn judged(not_unstable: f64, error: f64) -> Judgement {
-        let share = JudgedShare { not_unstable, points: POINTS };
-        Judgement { share: Some(share), reducible_error: Some(error), ..Judgement::default() }
-    }
-
-    #[test]
-    fn a_tolerance_asks_as_much_of_a_share_as_of_its_complement() {
-        for rare in [0.5_f64, 0.2, 1e-3, 1e-4] {
-            let small = 1e-4 * (rare * (1.0 - rare)).sqrt();
-            for share in [rare, 1.0 - rare] {
-                assert!(judged(share, 0.999 * small).is_within(1e-4) && !judged(share, 1.001 * small).is_within(1e-4));
-            }
-        }
-    }
-
-    #[test]
-    fn what_is_doubtful_or_blind_is_not_known() {
-        let doubtful = Judgement { is_doubtful: true, ..judged(0.5, 0.0) };
-        assert!(judged(0.5, 0.0).is_within(1e-5) && !doubtful.is_within(1.0) && !Judgement::default().is_within(1.0));
-        let sight = Sight { unstable: 2, runs: 20, is_marginal: false, clearance: None, points: 0 };
-        let blind = Judgement { sight: Some(sight), ..judged(0.5, 0.0) };
-        assert!(!blind.is_within(1.0) && blind.would_be_within(Some(1e-5)));
     }
 }

@@ -1,7 +1,7 @@
 //! What a level of a build has shown and what the build waits for, in a line.
 
 use super::components::ComponentResult;
-use super::decision::Judgement;
+use super::judgement::Judgement;
 use pcc_evaluate::components::{Component, Output};
 use pcc_evaluate::foundation::plural;
 use pcc_evaluate::surrogate::StopReason;
@@ -40,7 +40,7 @@ pub(super) fn remark(
             format!("{unstable} of them unstable, too few on one side to tell how often")
         }
         Some((share, error)) => {
-            let stable = share.not_unstable;
+            let stable = share.value;
             let (name, rarer) = if stable <= 0.5 { ("stable", stable) } else { ("unstable", 1.0 - stable) };
             let asked = tolerance
                 .map_or(String::new(), |tolerance| format!(", asked for ± {}", percent(tolerance * share.deviation())));
@@ -71,11 +71,11 @@ fn percent(share: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compilation::decision::JudgedShare;
+    use crate::compilation::judgement::JudgedShare;
 
     #[test]
     fn a_line_has_what_the_build_waits_for() {
-        let share = JudgedShare { not_unstable: 0.8, points: 50_000 };
+        let share = JudgedShare { value: 0.8, points: 50_000 };
         let judgement = Judgement { share: Some(share), error: Some(0.0012), ..Judgement::default() };
         let component = Component { id: 0, name: "re_1".to_owned(), center: 0.0, scale: 1.0 };
         let spent = Spent { runs: Duration::from_millis(1500), fits: Duration::from_millis(240) };

@@ -6,9 +6,10 @@
 
 use super::blindness::{LEAST_RARE, Sight};
 use super::components::{ComponentFit, ComponentResult};
-use super::decision::{Before, Judged, Judgement, Previous, Purpose, judge};
+use super::decision::{Before, Judged, Previous, Purpose, judge};
 use super::evaluations::{Evaluations, Level, groups};
 use super::grouped::GroupedEigenvalues;
+use super::judgement::Judgement;
 use super::level_remark::{Spent, remark, slowest};
 use super::near_boundary::near_boundary;
 use super::ranked::RankedModes;
@@ -180,13 +181,14 @@ impl<'a> Levels<'a> {
         let of_design = (0..runs.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
         let judged = Judged { surrogate: &surrogate, fitted: &results, values: &level.values, runs, of_design };
         let is_final = is_batch && self.clear_batches + 1 >= CLEAR_BATCHES;
-        let mut judgement = judge(judged, before, Purpose { tolerance, is_last, is_final }, observer)?;
+        let mut judgement =
+            judge(judged, before, Purpose { tolerance, is_last, is_final, shares: &self.study.fit.shares }, observer)?;
         let is_first = self.previous.is_none();
         self.previous = judgement.previous.take();
         record::judged(&mut surrogate, &judgement, runs);
         self.spent.fits += start.elapsed();
         observer.remark(&remark((size, tolerance), slowest, &judgement, self.spent));
-        self.stopping.note(judgement.reducible_error.or(judgement.error), size);
+        self.stopping.note(judgement.largest_error(), size);
         let former = std::mem::replace(&mut self.sight, judgement.sight.filter(|_| tolerance.is_some()));
         let is_clear = self.sight.is_some_and(|sight| sight.is_blind() && sight.clearance.is_some());
         self.clear_batches = if is_clear { self.clear_batches + usize::from(is_batch) } else { 0 };
@@ -215,7 +217,7 @@ impl<'a> Levels<'a> {
             self.candidates.push(Candidate { surrogate, error: judgement.error, reference });
         }
         self.early_end = self.stopping.early_end(&results, self.fitting.work());
-        if self.is_blind_for_good(&growth) {
+        if self.is_blind_for_good(&growth, &judgement) {
             self.early_end = Some(EarlyEnd::Blind);
         }
         self.growth = growth;
@@ -246,10 +248,11 @@ impl<'a> Levels<'a> {
     /// Points near the boundary for the next runs, if they are worth more than a level of the design.
     fn batch(&self, surrogate: &Surrogate, judgement: &Judgement, former: Option<Sight>) -> Option<Vec<Vec<f64>>> {
         let sight = judgement.sight.filter(|_| self.study.fit.enrich == Enrich::Decision)?;
-        let share = judgement.share.map_or(0.0, |share| share.not_unstable.min(1.0 - share.not_unstable));
+        let share = judgement.share.map_or(0.0, |share| share.value.min(1.0 - share.value));
         let is_worth_it = match sight.is_blind() {
             _ if sight.is_marginal => false,
             true => self.is_worth_looking(sight, former, share, judgement),
+            false if judgement.is_blind_to_named() => self.batches < IDLE_BATCHES,
             false => share < RARE && (self.batches == 0 || self.idle_batches < IDLE_BATCHES),
         };
         if !is_worth_it {
@@ -257,14 +260,15 @@ impl<'a> Levels<'a> {
         }
         let room = self.study.design.maximum.saturating_sub(self.evaluations.sizes().iter().sum());
         let wanted = self.study.inputs.dimension().max(LEAST_BATCH).min(self.study.design.step).min(room);
-        let points =
-            near_boundary(surrogate, &judgement.excess, &self.evaluations.points(), (wanted, sight.is_blind()));
+        let is_blind = sight.is_blind() || judgement.is_blind_to_named();
+        let judged = (judgement.excess.as_slice(), judgement.rarer.as_slice());
+        let points = near_boundary(surrogate, judged, &self.evaluations.points(), (wanted, is_blind));
         Some(points).filter(|points| !points.is_empty())
     }
 
     /// Whether the rarer side has been looked for long enough.
-    fn is_blind_for_good(&self, growth: &Growth) -> bool {
-        let is_blind = self.sight.is_some_and(|sight| sight.is_blind());
+    fn is_blind_for_good(&self, growth: &Growth, judgement: &Judgement) -> bool {
+        let is_blind = self.sight.is_some_and(|sight| sight.is_blind()) || judgement.is_blind_to_named();
         is_blind && matches!(growth, Growth::Design(size) if self.is_too_large_for_blind(*size))
     }
 

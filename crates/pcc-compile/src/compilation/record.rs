@@ -2,8 +2,8 @@
 
 use super::blindness::Sight;
 use super::components::ComponentResult;
-use super::decision::Judgement;
 use super::evaluations::{Evaluations, Level};
+use super::judgement::Judgement;
 use super::stopping::EarlyEnd;
 use crate::campaign::Run;
 use crate::fitting::design::NestedLatinHypercube;
@@ -121,7 +121,19 @@ pub(super) fn judged(surrogate: &mut Surrogate, judgement: &Judgement, runs: &[R
     }
     // Whoever asks for an error of a share is told what share it is of.
     if let (Some(share), true) = (judgement.share, has_tolerance(surrogate)) {
-        surrogate.training.settings.push(number("stable_share", share.not_unstable));
+        surrogate.training.settings.push(number("stable_share", share.value));
+    }
+    for named in &judgement.named {
+        let name = named.verdict.name();
+        let settings = &mut surrogate.training.settings;
+        settings.push(number(&format!("{name}_share"), named.share.value));
+        match named.error {
+            _ if named.is_blind() => {
+                settings.push(setting(&format!("{name}_runs"), SettingValue::Integer(named.runs[0] as u64)));
+            }
+            Some(error) => settings.push(number(&format!("{name}_share_error"), error)),
+            None => {}
+        }
     }
     if judgement.unlisted > 0 {
         surrogate.training.settings.push(setting("unlisted_runs", SettingValue::Integer(judgement.unlisted)));
@@ -220,6 +232,10 @@ fn training(
     let mut settings = settings_of(method);
     if let Some(tolerance) = study.fit.proportion_tolerance {
         settings.push(number("proportion_tolerance", tolerance));
+    }
+    if !study.fit.shares.is_empty() {
+        let names: Vec<&str> = study.fit.shares.iter().map(|verdict| verdict.name()).collect();
+        settings.push(setting("shares", SettingValue::Text(names.join(" "))));
     }
     if method.profile().chooses {
         let solvers: Vec<String> = fitted.iter().map(|fit| fit.solver.to_owned()).collect();

@@ -8,7 +8,7 @@
 //! [`PATIENCE`] levels, over which the design grew to [`GROWTH`] times its size; when the fits have cost more than a
 //! model that is quickly run is worth; or at the largest design.
 
-use super::decision::Judgement;
+use super::judgement::Judgement;
 use crate::fitting::fit::Fitted;
 use crate::study::Study;
 use pcc_evaluate::surrogate::StopReason;
@@ -125,11 +125,11 @@ fn are_accurate(fitted: &[Fitted]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compilation::decision::JudgedShare;
+    use crate::compilation::judgement::JudgedShare;
 
     /// A half, known to this error.
     fn judged(reducible_error: Option<f64>) -> Judgement {
-        let share = JudgedShare { not_unstable: 0.5, points: 50_000 };
+        let share = JudgedShare { value: 0.5, points: 50_000 };
         Judgement { share: Some(share), reducible_error, ..Judgement::default() }
     }
 

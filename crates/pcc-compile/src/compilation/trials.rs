@@ -3,7 +3,7 @@
 use super::decision::quantile;
 use super::judged_points::at_judged_points;
 use crate::campaign::Run;
-use pcc_evaluate::components::{Block, Margin, Output, OutputKind};
+use pcc_evaluate::components::{Block, Margin, Output, OutputKind, Top, Verdict};
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
 use pcc_evaluate::surrogate::Surrogate;
 
@@ -17,6 +17,34 @@ const TRIED_RUNS: usize = 150;
 
 /// Bounds are exceeded by rounding by less.
 const ROUNDING_MARGIN: f64 = 1.001;
+
+/// Points whose share is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Class {
+    /// Those that are stable or marginal.
+    NotUnstable,
+    /// Those with this verdict.
+    Of(Verdict),
+}
+
+impl Class {
+    /// Those that every study asks for, and those that one names.
+    pub fn all(named: &[Verdict]) -> Vec<Self> {
+        std::iter::once(Self::NotUnstable).chain(named.iter().copied().map(Self::Of)).collect()
+    }
+
+    fn holds(self, top: Top) -> bool {
+        match self {
+            Self::NotUnstable => is_not_unstable(top.excess),
+            Self::Of(verdict) => top.verdict() == verdict,
+        }
+    }
+
+    /// Number of its points.
+    pub fn count(self, block: &Block) -> usize {
+        (0..block.excess.len()).filter(|&i| self.holds(block.top(i))).count()
+    }
+}
 
 /// Shares of points that change sides, one per run, with the weights of the runs.
 pub(super) struct Shares {
@@ -86,9 +114,23 @@ impl<'a> Judge<'a> {
         self.block.excess.len()
     }
 
-    /// Number of points that are not unstable.
-    pub fn not_unstable(&self) -> usize {
-        not_unstable(&self.block)
+    /// Number of points of a class.
+    pub fn count(&self, class: Class) -> usize {
+        class.count(&self.block)
+    }
+
+    /// For each point, whether it is on the rarer side of a class.
+    pub fn rarer(&self, class: Class) -> Vec<bool> {
+        let is_rare = 2 * self.count(class) < self.points();
+        (0..self.points()).map(|i| class.holds(self.block.top(i)) == is_rare).collect()
+    }
+
+    /// The smallest number of points that are, or are not, of one of these classes; of those that a study names only
+    /// where some are and some are not.
+    pub fn rarest(&self, classes: &[Class]) -> usize {
+        let rarer = |&class: &Class| (class, self.count(class).min(self.points() - self.count(class)));
+        let counts = classes.iter().map(rarer).filter(|&(class, rare)| rare > 0 || class == Class::NotUnstable);
+        counts.map(|(_, rare)| rare).min().unwrap_or(0)
     }
 
     pub fn observer(&self) -> &'a dyn Observer {
@@ -120,19 +162,19 @@ impl<'a> Judge<'a> {
         of_margin * ROUNDING_MARGIN * self.surrogate.outputs.iter().map(of_output).fold(f64::MIN_POSITIVE, f64::max)
     }
 
-    /// Δp for the residuals of runs `first`….
-    pub fn shares(&self, residuals: &[Vec<f64>], first: usize) -> Result<Shares, Interrupted> {
+    /// Δp of a class for the residuals of runs `first`….
+    pub fn shares(&self, class: Class, residuals: &[Vec<f64>], first: usize) -> Result<Shares, Interrupted> {
         let tried = residuals.len().min(TRIED_RUNS);
         let run = |k: usize| k * residuals.len() / tried;
         let shares = try_map(tried, |k| {
             self.observer.check()?;
-            Ok(self.share(&residuals[run(k)]))
+            Ok(self.share(class, &residuals[run(k)]))
         })?;
         Ok(Shares { shares, weights: (0..tried).map(|k| self.weights[first + run(k)]).collect() })
     }
 
-    /// Stable points gained minus lost, as a share, if every component were larger by its residual.
-    fn share(&self, residual: &[f64]) -> f64 {
+    /// Points of a class gained minus lost, as a share, if every component were larger by its residual.
+    fn share(&self, class: Class, residual: &[f64]) -> f64 {
         let (mut values, mut eigenvalues) = (vec![0.0; residual.len()], Vec::new());
         let mut gained = 0.0;
         let reach = self.reach(residual);
@@ -142,8 +184,8 @@ impl<'a> Judge<'a> {
             }
             eigenvalues.clear();
             self.surrogate.outputs.iter().for_each(|output| output.recombine(&values, &mut eigenvalues));
-            let moved = is_not_unstable(self.surrogate.verdict.top(&eigenvalues).excess);
-            gained += stands_for * (f64::from(moved) - f64::from(is_not_unstable(self.block.excess[i])));
+            let moved = class.holds(self.surrogate.verdict.top(&eigenvalues));
+            gained += stands_for * (f64::from(moved) - f64::from(class.holds(self.block.top(i))));
         }
         gained / self.points() as f64
     }
@@ -152,9 +194,4 @@ impl<'a> Judge<'a> {
 /// Whether a point with this excess is stable or marginal; what is no number is neither.
 pub(super) fn is_not_unstable(excess: f64) -> bool {
     excess <= 0.0
-}
-
-/// Number of points that are not unstable.
-pub(super) fn not_unstable(block: &Block) -> usize {
-    block.excess.iter().filter(|&&excess| is_not_unstable(excess)).count()
 }

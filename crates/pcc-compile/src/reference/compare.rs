@@ -6,7 +6,7 @@ use super::verdicts::{Judged, Verdicts};
 use crate::campaign::Campaign;
 use crate::mechanics::spectrum::{Spectrum, components_of};
 use nalgebra::Complex;
-use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind};
+use pcc_evaluate::components::{Block, Component, Label, Output, OutputKind, Verdict};
 use pcc_evaluate::evaluation::Plan;
 use pcc_evaluate::foundation::Observer;
 use pcc_evaluate::probability::random::Purpose;
@@ -86,6 +86,11 @@ impl Comparison {
         [self.verdicts.model(2), self.verdicts.surrogate(2)].map(|hits| self.share(hits))
     }
 
+    /// The shares of points with a verdict, by the model and by the surrogate.
+    pub fn shares_of(&self, verdict: Verdict) -> [f64; 2] {
+        self.verdicts.of(verdict).map(|hits| self.share(hits))
+    }
+
     fn share(&self, hits: u64) -> f64 {
         Proportion { hits, samples: self.samples - self.verdicts.failed() }.value()
     }
@@ -101,8 +106,16 @@ impl Comparison {
         self.relative_error_of(2)
     }
 
+    /// The same of points with a verdict.
+    pub fn relative_error_of_verdict_percent(&self, verdict: Verdict) -> Option<f64> {
+        self.relative_error(self.verdicts.of(verdict))
+    }
+
     fn relative_error_of(&self, class: usize) -> Option<f64> {
-        let (found, truth) = (self.verdicts.surrogate(class), self.verdicts.model(class));
+        self.relative_error([self.verdicts.model(class), self.verdicts.surrogate(class)])
+    }
+
+    fn relative_error(&self, [truth, found]: [u64; 2]) -> Option<f64> {
         let off = found.abs_diff(truth) + self.verdicts.failed();
         relative_error_percent((truth + off) as f64, truth as f64)
     }

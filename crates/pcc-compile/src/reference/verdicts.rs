@@ -12,6 +12,8 @@ pub struct Verdicts {
     counts: [[u64; 3]; 3],
     /// Points at which the model failed, by what the surrogate says: disagreement, whatever it is.
     failed: [u64; 3],
+    /// Unstable points whose eigenvalue with the largest excess is real, by the surrogate and by the model.
+    divergent: [u64; 2],
 }
 
 /// What the model says of a point.
@@ -21,11 +23,18 @@ pub(super) struct Judged {
     pub excess: f64,
     /// Where that is zero, what it cannot be told from.
     pub error: f64,
+    /// Whether it is unstable and the eigenvalue is real.
+    pub is_divergent: bool,
 }
 
 impl Judged {
     pub fn of(spectrum: &Spectrum) -> Self {
-        Self { excess: spectrum.top().excess, error: spectrum.marginal_error().unwrap_or(0.0) }
+        let top = spectrum.top();
+        Self {
+            excess: top.excess,
+            error: spectrum.marginal_error().unwrap_or(0.0),
+            is_divergent: top.verdict() == Verdict::Divergence,
+        }
     }
 }
 
@@ -54,7 +63,13 @@ impl Verdicts {
 
     /// Counts the points of a block.
     pub(super) fn classify(&mut self, model: impl Iterator<Item = Judged>, block: &Block) {
-        model.zip(&block.excess).for_each(|(model, &excess)| self.add(excess, model.excess, model.error));
+        for (i, model) in model.enumerate() {
+            let top = block.top(i);
+            self.add(top.excess, model.excess, model.error);
+            let is_rounding = model.excess == 0.0 && top.excess.abs() <= model.error;
+            self.divergent[0] += u64::from(top.verdict() == Verdict::Divergence && !is_rounding);
+            self.divergent[1] += u64::from(model.is_divergent);
+        }
     }
 
     /// Counts points at which the model failed, with the surrogate there.
@@ -71,6 +86,7 @@ impl Verdicts {
     pub(super) fn merge(&mut self, others: &Self) {
         self.counts.iter_mut().flatten().zip(others.counts.iter().flatten()).for_each(|(own, added)| *own += added);
         self.failed.iter_mut().zip(others.failed).for_each(|(own, added)| *own += added);
+        self.divergent.iter_mut().zip(others.divergent).for_each(|(own, added)| *own += added);
     }
 
     /// Number of points.
@@ -97,6 +113,17 @@ impl Verdicts {
 
     pub(super) fn model(&self, class: usize) -> u64 {
         self.counts.iter().map(|row| row[class]).sum()
+    }
+
+    /// Points with a verdict, by the model and by the surrogate.
+    pub(super) fn of(&self, verdict: Verdict) -> [u64; 2] {
+        let [surrogate, model] = self.divergent;
+        match verdict {
+            Verdict::Stable => [self.model(0), self.surrogate(0)],
+            Verdict::Marginal => [self.model(1), self.surrogate(1)],
+            Verdict::Flutter => [self.model(2) - model, self.surrogate(2) - surrogate],
+            Verdict::Divergence => [model, surrogate],
+        }
     }
 
     /// Points that the surrogate puts into a class and the model does not, and the other way round.

@@ -6,11 +6,12 @@ use super::defaults;
 use super::error::StudyError;
 use super::model::ModelSettings;
 use super::raw::{FitValue, Ordered};
-use super::settings::{Derivatives, Enrich, FitSettings};
+use super::settings::{Derivatives, Enrich, FitSettings, NAMED_SHARES};
 use super::validate::{Lines, alternatives};
 use crate::fitting::fit::FitMethod;
 use crate::fitting::fit::method::{Design, Domain, Entry, Given, Key, METHODS, Value};
 use crate::mechanics::spectrum::Target;
+use pcc_evaluate::components::Verdict;
 
 /// Entries of the matrix of a least-squares fit: two gigabytes.
 const LARGEST_MATRIX: f64 = 2.5e8;
@@ -20,6 +21,8 @@ const METHOD: &str = "method";
 const DERIVATIVES: &str = "derivatives";
 const TOLERANCE: &str = "proportion_tolerance";
 const ENRICH: &str = "enrich";
+const SHARES: &str = "shares";
+const OF_EVERY_METHOD: [&str; 5] = [METHOD, DERIVATIVES, TOLERANCE, ENRICH, SHARES];
 
 impl Lines<'_> {
     pub(super) fn fit(
@@ -44,7 +47,8 @@ impl Lines<'_> {
             }),
         };
         let enrich = find(ENRICH).map_or(Ok(Enrich::default()), |value| self.enrich(value, entry))?;
-        let settings = raw.iter().filter(|(key, _)| ![METHOD, DERIVATIVES, TOLERANCE, ENRICH].contains(&key.as_str()));
+        let shares = find(SHARES).map_or(Ok(Vec::new()), |value| self.shares(value, entry))?;
+        let settings = raw.iter().filter(|(key, _)| !OF_EVERY_METHOD.contains(&key.as_str()));
         let method = self.settings(entry, settings, inputs)?;
         match derivatives_place {
             Some(place) if derivatives == Derivatives::Always && !model.has_derivatives() => {
@@ -55,9 +59,9 @@ impl Lines<'_> {
             }
             // Values alone, whatever is asked for.
             _ if !method.can_use_derivatives() => {
-                Ok(FitSettings { method, proportion_tolerance, derivatives: Derivatives::Auto, enrich })
+                Ok(FitSettings { method, proportion_tolerance, derivatives: Derivatives::Auto, enrich, shares })
             }
-            _ => Ok(FitSettings { method, proportion_tolerance, derivatives, enrich }),
+            _ => Ok(FitSettings { method, proportion_tolerance, derivatives, enrich, shares }),
         }
     }
 
@@ -104,6 +108,28 @@ impl Lines<'_> {
         let word = self.within(&KEY, value)?;
         let named = |enrich: &Enrich| matches!(&word, Value::Word(word) if word == enrich.name());
         Ok(WORDS.into_iter().find(named).unwrap_or_default())
+    }
+
+    fn shares(&self, value: &Spanned<FitValue>, entry: &Entry) -> Result<Vec<Verdict>, StudyError> {
+        let words: Vec<&str> = NAMED_SHARES.into_iter().map(Verdict::name).collect();
+        let expected = alternatives(&words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>());
+        if !entry.grows {
+            const KEY: Key = Key { name: SHARES, domain: Domain::Word(&[]) };
+            return Err(self.key_of_method(&KEY, value, |entry| entry.grows));
+        }
+        let FitValue::Texts(names) = value.get_ref() else {
+            return Err(self.wrong_value("fit.shares", value, format!("a list of {expected}, like [\"divergence\"]")));
+        };
+        match names.iter().find(|name| !words.contains(&name.as_str())) {
+            Some(name) => Err(StudyError::UnknownWord {
+                place: self.place("fit.shares", value),
+                found: name.clone(),
+                expected: format!("{expected}; stable and unstable always count"),
+            }),
+            None => {
+                Ok(NAMED_SHARES.into_iter().filter(|verdict| names.iter().any(|name| name == verdict.name())).collect())
+            }
+        }
     }
 
     fn derivatives(&self, value: &Spanned<FitValue>, target: Target) -> Result<Derivatives, StudyError> {
@@ -190,7 +216,7 @@ impl Lines<'_> {
     }
 
     fn unknown_key(&self, name: &str, value: &Spanned<FitValue>) -> StudyError {
-        let mut known = vec![METHOD, DERIVATIVES, TOLERANCE, ENRICH];
+        let mut known = OF_EVERY_METHOD.to_vec();
         for key in METHODS.iter().flat_map(|entry| entry.keys) {
             if !known.contains(&key.name) {
                 known.push(key.name);

@@ -36,6 +36,10 @@ pub(super) fn study_hash(study: &Study) -> String {
     if fit.enrich != Enrich::default() {
         let _ = writeln!(text, "enrich {}", fit.enrich.name());
     }
+    if !fit.shares.is_empty() {
+        let names: Vec<&str> = fit.shares.iter().map(|verdict| verdict.name()).collect();
+        let _ = writeln!(text, "shares {}", names.join(" "));
+    }
     if let Some(tolerance) = fit.proportion_tolerance {
         let _ = writeln!(text, "proportion tolerance {tolerance:?}");
     }

@@ -25,7 +25,7 @@ pub use file::StudyFileError;
 pub use model::{Command, ModelSettings, Table};
 #[cfg(feature = "schema")]
 pub use schema::schema;
-pub use settings::{Derivatives, DesignKind, DesignSettings, Enrich, FitSettings, SpectrumSettings};
+pub use settings::{Derivatives, DesignKind, DesignSettings, Enrich, FitSettings, NAMED_SHARES, SpectrumSettings};
 
 use crate::mechanics::model::matrices::Matrices;
 use crate::mechanics::model::{Clutch, Model, ModelError, TableModel};

@@ -113,6 +113,8 @@ fn enrich(file: &mut Printer, study: &Study) {
     if study.fit.proportion_tolerance.is_some() {
         let explanation = "runs near the boundary where the rarer side is rare or not seen; or \"none\"";
         file.line("enrich", format!("{:?}", study.fit.enrich.name()), explanation);
+        let names: Vec<&str> = study.fit.shares.iter().map(|verdict| verdict.name()).collect();
+        file.line("shares", format!("{names:?}"), "further shares that the tolerance is of, like [\"divergence\"]");
     }
 }
 

@@ -224,6 +224,8 @@ struct EveryMethod {
     _proportion_tolerance: Option<f64>,
     #[serde(rename = "enrich")]
     _enrich: Option<String>,
+    #[serde(rename = "shares")]
+    _shares: Option<Vec<String>>,
     #[serde(rename = "derivatives")]
     _derivatives: Option<Derivatives>,
 }
@@ -243,6 +245,7 @@ pub(super) enum FitValue {
     Whole(i64),
     Number(f64),
     Text(String),
+    Texts(Vec<String>),
 }
 
 impl fmt::Display for FitValue {
@@ -252,6 +255,7 @@ impl fmt::Display for FitValue {
             Self::Whole(value) => write!(f, "{value}"),
             Self::Number(value) => write!(f, "{value:?}"),
             Self::Text(value) => write!(f, "{value:?}"),
+            Self::Texts(values) => write!(f, "{values:?}"),
         }
     }
 }

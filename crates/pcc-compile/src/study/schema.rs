@@ -7,6 +7,7 @@
 
 mod inputs;
 
+use super::settings::NAMED_SHARES;
 use crate::fitting::fit::method::{Domain, METHODS};
 use inputs::{Dependence, Input};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -357,11 +358,15 @@ impl JsonSchema for Fit {
             "Estimated error of the share p of stable cases that is small enough, as a fraction of √(p (1 − p)).";
         properties.insert(
             "proportion_tolerance".into(),
-            json!({"description": tolerance, "type": "number", "exclusiveMinimum": 0}),
+            json!({"description": tolerance, "type": "number", "minimum": 1e-5, "maximum": 1}),
         );
         let enrich = "Where runs are made beside those of the design: near the boundary of stability, where the rarer side \
                       is rare or not seen (\"decision\", default), or nowhere.";
         properties.insert("enrich".into(), json!({"description": enrich, "enum": ["decision", "none"]}));
+        let shares =
+            "Further shares that the tolerance is of, beside those of stable and unstable cases. Default none.";
+        let names = NAMED_SHARES.map(|verdict| verdict.name());
+        properties.insert("shares".into(), json!({"description": shares, "type": "array", "items": {"enum": names}}));
         for entry in &METHODS {
             for key in entry.keys {
                 let of: Vec<&str> =

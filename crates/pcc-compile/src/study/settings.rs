@@ -3,7 +3,7 @@
 use super::model::ModelSettings;
 use crate::fitting::fit::FitMethod;
 use crate::mechanics::spectrum::{Modes, Target};
-use pcc_evaluate::components::Margin;
+use pcc_evaluate::components::{Margin, Verdict};
 
 /// What of the spectrum is expanded.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +75,13 @@ pub struct FitSettings {
     pub derivatives: Derivatives,
     /// Where runs are made beside those of the design.
     pub enrich: Enrich,
+    /// Verdicts whose shares the tolerance is of as well, beside those of stable and unstable points, in the order of
+    /// [`NAMED_SHARES`].
+    pub shares: Vec<Verdict>,
 }
+
+/// Verdicts whose shares a study can name.
+pub const NAMED_SHARES: [Verdict; 3] = [Verdict::Marginal, Verdict::Flutter, Verdict::Divergence];
 
 /// Where runs are made beside those of the design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
