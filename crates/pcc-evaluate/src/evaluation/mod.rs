@@ -29,6 +29,7 @@ pub use kernel::results::Results;
 pub use questions::division::Division;
 pub use questions::extrapolated::Extrapolated;
 pub use questions::findings::{Answer, Cell, Findings};
+pub use questions::given_points::{GivenPoints, PointError};
 pub use questions::histogram::Histogram;
 pub use questions::monte_carlo::monte_carlo;
 pub use questions::pilot::{Pilot, PilotError};

@@ -166,7 +166,7 @@ impl<'a> Evaluator<'a> {
 }
 
 /// What decides in a lane.
-fn top(results: &Results, lane: usize) -> Top {
+pub(crate) fn top(results: &Results, lane: usize) -> Top {
     Top { max_re: results.max_re.0[lane], excess: results.excess.0[lane], frequency: results.top_frequency.0[lane] }
 }
 

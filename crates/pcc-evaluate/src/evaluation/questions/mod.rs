@@ -3,6 +3,7 @@
 pub(super) mod division;
 pub(super) mod extrapolated;
 pub(super) mod findings;
+pub(super) mod given_points;
 pub(super) mod histogram;
 pub(super) mod monte_carlo;
 pub(super) mod pilot;
