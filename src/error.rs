@@ -9,7 +9,7 @@ use pcc_compile::mechanics::model::ModelError;
 use pcc_compile::reference::ReferenceError;
 use pcc_compile::study::{StudyError, StudyFileError};
 use pcc_evaluate::artifact::{LossError, ReadError, SaveError, WriteError};
-use pcc_evaluate::evaluation::{EvalError, SurveyError};
+use pcc_evaluate::evaluation::{EvalError, PointError, SurveyError};
 use pcc_evaluate::foundation::{FileError, Interrupted, is_interruption};
 use pcc_evaluate::session::SessionError;
 use pcc_evaluate::shard_file::PartError;
@@ -86,6 +86,9 @@ pub enum Error {
     /// A surrogate cannot be evaluated.
     #[error("{0}")]
     Eval(#[from] EvalError),
+    /// A given point has no value.
+    #[error("{0}")]
+    Point(#[from] PointError),
     /// A request was not answered.
     #[error("{0}")]
     Session(#[from] SessionError),
@@ -111,6 +114,12 @@ impl Error {
         if self.is_interruption() { INTERRUPTED } else { FAILED }
     }
 }
+
+/// Exit code of what went well.
+pub(crate) const DONE: u8 = 0;
+
+/// Exit code of a check that did not hold.
+pub(crate) const CHECK_FAILED: u8 = 1;
 
 /// Exit code of what the user interrupted, as shells give it to what Ctrl-C ends.
 pub(crate) const INTERRUPTED: u8 = 130;

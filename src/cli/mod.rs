@@ -22,7 +22,7 @@ mod terminal;
 #[cfg(feature = "schema")]
 pub use schemas::schemas;
 
-use crate::error::{FAILED, INTERRUPTED};
+use crate::error::{CHECK_FAILED, DONE, FAILED, INTERRUPTED};
 use arguments::Arguments;
 use clap::Parser;
 use clap::error::ErrorKind;
@@ -45,9 +45,14 @@ enum Ending {
     Interrupted,
 }
 
-/// Runs pcc with these arguments, the first of them the program's name: 0 done, 1 a requested check did not hold, 2 bad
-/// usage or input, 130 interrupted.
+/// Runs pcc with these arguments, the first of them the program's name.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> ExitCode {
+    ExitCode::from(exit_code_of(arguments))
+}
+
+/// The same for programs that end themselves: 0 done, 1 a requested check did not hold, 2 bad usage or input, 130
+/// interrupted.
+pub fn exit_code_of<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
     let (arguments, remarks) = old_spellings::modern(arguments.into_iter().map(Into::into));
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
@@ -55,16 +60,16 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
             remarks.iter().for_each(|text| remark(text));
             let _ = error.print();
             let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
-            return ExitCode::from(if asked { 0 } else { FAILED });
+            return if asked { DONE } else { FAILED };
         }
     };
     run_command(&arguments, &remarks)
 }
 
 /// Says what went wrong; the exit code that goes with it.
-fn failed(error: &anyhow::Error) -> ExitCode {
+fn failed(error: &anyhow::Error) -> u8 {
     complain(&message(error));
-    ExitCode::from(if is_interruption(&**error) { INTERRUPTED } else { FAILED })
+    if is_interruption(&**error) { INTERRUPTED } else { FAILED }
 }
 
 /// An error of long work on `what`; an interruption says nothing of that, since nothing is wrong with it.
@@ -83,16 +88,16 @@ fn message(error: &anyhow::Error) -> String {
     })
 }
 
-fn run_command(arguments: &Arguments, remarks: &[String]) -> ExitCode {
+fn run_command(arguments: &Arguments, remarks: &[String]) -> u8 {
     let (pool, context) = match prepare(arguments) {
         Ok(prepared) => prepared,
         Err(error) => return failed(&error),
     };
     remarks.iter().for_each(|text| context.say(text));
     let code = match pool.install(|| arguments.command.run(&context)) {
-        Ok(Ending::Done) => ExitCode::SUCCESS,
-        Ok(Ending::CheckFailed) => ExitCode::from(1),
-        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Ok(Ending::Done) => DONE,
+        Ok(Ending::CheckFailed) => CHECK_FAILED,
+        Ok(Ending::Interrupted) => INTERRUPTED,
         Err(error) => failed(&error),
     };
     context.say_afterwards();

@@ -17,10 +17,19 @@ pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// Watches for Ctrl-C: the work is asked to stop, and ends without leaving anything half-written.
+    ///
+    /// A process has one such watch, however often it runs the command line.
     pub fn install() -> anyhow::Result<Self> {
+        static FLAG: Mutex<Option<Arc<AtomicBool>>> = Mutex::new(None);
+        let mut installed = FLAG.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(flag) = &*installed {
+            flag.store(false, Ordering::SeqCst);
+            return Ok(Self(flag.clone()));
+        }
         let flag = Arc::new(AtomicBool::new(false));
         let seen = flag.clone();
         ctrlc::set_handler(move || seen.store(true, Ordering::SeqCst))?;
+        *installed = Some(flag.clone());
         Ok(Self(flag))
     }
 }

@@ -100,7 +100,7 @@ pub struct CertifyReport {
 }
 
 impl CertifyReport {
-    /// The report of a surrogate that was given a certificate and written to `file`.
+    /// The report of a surrogate that was given a certificate and written to `file`; without a name it is in no file.
     pub fn new(surrogate: &Surrogate, file: String, elapsed_seconds: f64) -> Self {
         let study = surrogate.provenance.study_name.clone();
         let contradicts_surrogate = surrogate.certificates.last().is_some_and(contradicts);
@@ -175,7 +175,10 @@ impl CertifyReport {
             let failed = plural(new.failed as usize, "run");
             facts.add("failed", format!("{failed}, counted as disagreement both ways"), "");
         }
-        facts.add("written to", format!("{}, after {:.2} s", self.file, self.elapsed_seconds), "");
+        match self.file.as_str() {
+            "" => facts.add("made in", format!("{:.2} s", self.elapsed_seconds), ""),
+            file => facts.add("written to", format!("{file}, after {:.2} s", self.elapsed_seconds), ""),
+        }
         facts
     }
 }

@@ -1,9 +1,10 @@
 //! The pictures of a surrogate.
 
+use super::eval::EvalReport;
 use super::sensitivity::{Bounded, IndexPair, SensitivityReport};
 use super::shapley::{InputEffects, ShapleyReport};
 use num_complex::Complex;
-use pcc_charts::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol};
+use pcc_charts::{Axis, Bar, Chart, Color, Guide, Marks, Series, Symbol, sheet};
 use pcc_evaluate::components::{Block, Label};
 use pcc_evaluate::probability::inputs::Input;
 use pcc_evaluate::probability::statistics::density;
@@ -49,6 +50,14 @@ pub(super) fn density_chart(title: &str, samples: &[(&str, Color, &[f64])]) -> C
         series: series.collect(),
         guides: vec![Guide::Vertical(0.0, "stability limit".to_owned())],
     }
+}
+
+/// Which inputs decide on stability, as an SVG file; none where nothing is known of it.
+pub fn sensitivity_charts(report: &EvalReport) -> Vec<String> {
+    let of_sobol = report.sensitivity.as_ref().map(sobol_charts);
+    let of_shapley = report.shapley.as_ref().map(shapley_charts);
+    let charts: Vec<Chart> = of_sobol.into_iter().chain(of_shapley).flatten().collect();
+    charts.into_iter().map(|chart| sheet("", &chart.description.clone(), &[chart], 1)).collect()
 }
 
 /// Surrogate against model at the same points.

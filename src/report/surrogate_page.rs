@@ -9,7 +9,10 @@ use super::numbers::{share, significant};
 use super::page::Page;
 use pcc_charts::Color;
 use pcc_evaluate::components::Block;
+use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::count;
+use pcc_evaluate::probability::inputs::random_points;
+use pcc_evaluate::probability::random::Purpose;
 use pcc_evaluate::surrogate::Surrogate;
 
 /// Inputs over which modes are drawn.
@@ -17,6 +20,9 @@ const DRAWN_INPUTS: usize = 3;
 
 /// Relative errors of the proportion and misclassified shares from here on are shown as a warning, in percent.
 const LARGE_ERROR_PERCENT: f64 = 1.0;
+
+/// Points of the surrogate that are kept for pictures.
+const POINTS: u64 = 20_000;
 
 /// Points of a scatter: more would only hide each other.
 const SCATTER: usize = 1500;
@@ -36,6 +42,14 @@ pub struct SurrogatePage<'a> {
     pub block: &'a Block,
     /// The model at the same points, if a study was given.
     pub validation: Option<Validation<'a>>,
+}
+
+/// The first points that `eval` and `reference` take, standardized, and the surrogate there: what a page draws.
+pub fn page_points(surrogate: &Surrogate, seed: u64) -> (Vec<Vec<f64>>, Block) {
+    let points = random_points(&surrogate.inputs, seed, Purpose::Evaluation, 0..POINTS);
+    let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
+    let block = evaluate_points(surrogate, &Plan::new(surrogate), &references);
+    (points, block)
 }
 
 /// The model at the points of a page.

@@ -5,23 +5,15 @@ use crate::cli::overwrite::{Output, SURROGATE_PAGE, claim};
 use crate::cli::shared_options::{RecordingOptions, SAMPLES, run_count, sample_count, seed};
 use crate::cli::study_of::{StudyFile, runs_or_default};
 use crate::cli::{Context, Ending, about};
-use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation};
+use crate::report::{CompareReport, InspectReport, SurrogatePage, Validation, page_points};
 use anyhow::Context as _;
 use clap::Args;
 use pcc_compile::reference::{ModelSample, check_problem};
-use pcc_evaluate::components::Block;
-use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::{count, save};
-use pcc_evaluate::probability::inputs::random_points;
-use pcc_evaluate::probability::random::Purpose;
-use pcc_evaluate::surrogate::Surrogate;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-
-/// Points of the surrogate that are kept for pictures.
-const POINTS: u64 = 20_000;
 
 /// What the help ends with.
 const EXAMPLES: &str = "\
@@ -93,7 +85,7 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         }
         None => None,
     };
-    let (points, block) = at_random_points(surrogate, options.seed);
+    let (points, block) = page_points(surrogate, options.seed);
     let eval = context.sample(surrogate, options.samples, options.seed)?;
     let bytes = std::fs::metadata(&options.surrogate).map_or(0, |metadata| metadata.len());
     let html = SurrogatePage {
@@ -113,14 +105,6 @@ pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending
         compare: model.map(|(_, compare)| compare),
     })?;
     Ok(Ending::Done)
-}
-
-/// The first points that `eval` and `reference` take, and the surrogate there.
-fn at_random_points(surrogate: &Surrogate, seed: u64) -> (Vec<Vec<f64>>, Block) {
-    let points = random_points(&surrogate.inputs, seed, Purpose::Evaluation, 0..POINTS);
-    let references: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
-    let block = evaluate_points(surrogate, &Plan::new(surrogate), &references);
-    (points, block)
 }
 
 /// Where the page is.
