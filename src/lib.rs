@@ -44,22 +44,28 @@ pub use error::Error;
 
 // Studies and models.
 pub use pcc_compile::mechanics::model::command::results_table::ResultRow;
-pub use pcc_compile::mechanics::model::{Linearization, Model, ModelError, SecondOrder};
-pub use pcc_compile::study::Study;
+pub use pcc_compile::mechanics::model::{Concurrency, Linearization, Model, ModelAnswer, ModelError, SecondOrder};
+pub use pcc_compile::study::{Function, FunctionAnswers, ModelSettings, Study, StudyFileError};
 
 // From a study to a surrogate, and the model's word on it.
-pub use pcc_compile::ask_and_tell::{Step, Told, ask, tell};
+pub use pcc_compile::ask_and_tell::{
+    AskError, Step, TellError, Told, ask, ask_runs, build_from_answers, tell, tell_runs,
+};
 pub use pcc_compile::campaign::journal::{Contents, Journal};
-pub use pcc_compile::campaign::{Books, Campaign, Ledger, Recording};
-pub use pcc_compile::compilation::{BuiltFile, build, build_to_file, build_with};
-pub use pcc_compile::reference::{Comparison, certify_with_model, compare_with_model};
+pub use pcc_compile::campaign::{Books, Campaign, Failure, Ledger, Note, Recording, RunError};
+pub use pcc_compile::compilation::{BuildError, BuiltFile, build, build_to_file, build_with};
+pub use pcc_compile::reference::{Comparison, ReferenceError, certify_with_model, check_problem, compare_with_model};
 
 // A surrogate and what it answers.
-pub use pcc_evaluate::artifact::Format;
-pub use pcc_evaluate::evaluation::{Bins, Condition, Event, Question, Sampler, Sweep, monte_carlo};
-pub use pcc_evaluate::foundation::{InstructionSet, Observer, Silent};
+pub use pcc_evaluate::artifact::{Artifact, Format, ReadError, decode, encode};
+pub use pcc_evaluate::components::{Label, Verdict};
+pub use pcc_evaluate::evaluation::{
+    Bins, Condition, EvalError, Event, GivenPoints, PointError, Question, Sampler, SurveyError, Sweep, monte_carlo,
+};
+pub use pcc_evaluate::foundation::{InstructionSet, Interrupted, Observer, Silent};
+pub use pcc_evaluate::probability::inputs::Input;
 pub use pcc_evaluate::probability::statistics::{Interval, Proportion};
-pub use pcc_evaluate::session::{Evaluation, HistogramRequest, Request, Session};
+pub use pcc_evaluate::session::{Evaluation, HistogramRequest, Request, Session, SessionError};
 pub use pcc_evaluate::surrogate::{Certificate, Surrogate};
 
 #[cfg(doctest)]

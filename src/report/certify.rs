@@ -100,7 +100,7 @@ pub struct CertifyReport {
 }
 
 impl CertifyReport {
-    /// The report of a surrogate that was given a certificate and written to `file`; without a name it is in no file.
+    /// The report of a surrogate that was given a certificate and written to `file`, or to none if that is empty.
     pub fn new(surrogate: &Surrogate, file: String, elapsed_seconds: f64) -> Self {
         let study = surrogate.provenance.study_name.clone();
         let contradicts_surrogate = surrogate.certificates.last().is_some_and(contradicts);

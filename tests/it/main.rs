@@ -21,6 +21,7 @@ mod evaluation;
 mod extrapolation;
 mod field;
 mod full_expansions;
+mod functions;
 mod golden_file;
 mod gradient_fits;
 mod help;

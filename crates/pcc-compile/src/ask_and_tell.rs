@@ -4,13 +4,20 @@
 //! answers to them from a table, and takes none if the build could not go on with them. Once nothing is missing,
 //! [`crate::compilation::build`] with the journal makes the surrogate, with the bytes of a build that ran the model
 //! itself.
+//!
+//! [`ask`] and [`tell`] exchange tables, which hold eigenvalues alone. A program that has the answers themselves, with
+//! matrices and derivatives, exchanges them with [`ask_runs`] and [`tell_runs`].
 
-use crate::campaign::journal::{Contents, Journal, JournalError, RunOutcome};
-use crate::campaign::{Campaign, DesignPoint, Ledger, RowProblem, RunError, match_answers};
+use crate::campaign::journal::{Contents, Journal, JournalError, Record, RunOutcome};
+use crate::campaign::{
+    Campaign, DesignPoint, Ledger, MatchedAnswers, RowProblem, RunError, Runner, match_answers, match_runs,
+};
 use crate::compilation::{BuildError, build};
+use crate::mechanics::model::ModelAnswer;
 use crate::mechanics::model::command::results_table::ResultRow;
 use crate::study::Study;
 use pcc_evaluate::foundation::{Observer, is_interruption, plural};
+use pcc_evaluate::surrogate::Surrogate;
 use thiserror::Error;
 
 /// Rows that are named when they cannot be taken.
@@ -113,11 +120,34 @@ pub fn check(study: &Study) -> Result<(), AskError> {
 /// ```
 pub fn ask(study: &Study, contents: &Contents, observer: &dyn Observer) -> Result<Step, AskError> {
     check(study)?;
+    ask_runs(study, contents, observer)
+}
+
+/// The same of a study whose answers are told by [`tell_runs`]: it may fit derivatives.
+///
+/// # Errors
+///
+/// [`AskError::Build`] if the build fails on these answers.
+pub fn ask_runs(study: &Study, contents: &Contents, observer: &dyn Observer) -> Result<Step, AskError> {
     let (step, failure) = step(study, contents, observer);
     match failure {
         Some(error) => Err(error.into()),
         None => Ok(step),
     }
+}
+
+/// The surrogate that these answers make, once they are complete: the model is not run.
+///
+/// # Errors
+///
+/// [`BuildError`]; of a build that waits for more answers [`RunError::Unanswered`].
+pub fn build_from_answers(
+    study: &Study,
+    contents: &Contents,
+    observer: &dyn Observer,
+) -> Result<Surrogate, BuildError> {
+    let ledger = Ledger::blank(study).knowing(contents).asking();
+    build(Campaign { study, ledger: Some(&ledger), counts_failures: false }, observer)
 }
 
 /// Takes `rows` of answers into `journal`, which has `contents`. With `replaces`, an answer that contradicts an earlier
@@ -135,25 +165,84 @@ pub fn tell(
     observer: &dyn Observer,
 ) -> Result<Told, TellError> {
     check(study)?;
-    let known = Ledger::blank(study).knowing(&contents);
-    let (before, failure) = step(study, &contents, observer);
+    let matched = |asked: &[DesignPoint], known: &Ledger| {
+        match_answers(study, asked, |point| known.find(point).cloned(), rows, replaces).map_err(TellError::Rows)
+    };
+    take(study, Some(journal), &mut contents, matched, observer)
+}
+
+/// Takes answers of model runs into `contents`, and into `journal` if there is one: the system or the eigenvalues at
+/// points that were asked for, or why there are none. Points are known by the bits of their inputs.
+///
+/// # Errors
+///
+/// [`TellError`]; `contents` and journal are then as they were.
+pub fn tell_runs(
+    study: &Study,
+    journal: Option<&Journal>,
+    contents: &mut Contents,
+    answers: &[(Vec<f64>, Result<ModelAnswer, String>)],
+    observer: &dyn Observer,
+) -> Result<Told, TellError> {
+    let runner = Runner::new(study).map_err(|error| AskError::Build(error.into()))?;
+    let runner = runner.with_derivatives(study.uses_derivatives());
+    let outcome = |answer: &Result<ModelAnswer, String>| {
+        let found = answer.clone().and_then(|answer| runner.computation(answer).map_err(|cause| cause.to_string()));
+        match found {
+            Ok(computation) => RunOutcome::Answered(computation),
+            Err(cause) => RunOutcome::Failed { attempts: 1, cause, by_circumstances: false },
+        }
+    };
+    let matched = |asked: &[DesignPoint], known: &Ledger| {
+        let runs = answers.iter().map(|(point, answer)| (point.clone(), outcome(answer)));
+        match_runs(study, asked, |point| known.find(point).cloned(), runs).map_err(TellError::Rows)
+    };
+    take(study, journal, contents, matched, observer)
+}
+
+/// Takes what `matched` finds new for the points that the build has asked for.
+fn take(
+    study: &Study,
+    journal: Option<&Journal>,
+    contents: &mut Contents,
+    matched: impl FnOnce(&[DesignPoint], &Ledger) -> Result<MatchedAnswers, TellError>,
+    observer: &dyn Observer,
+) -> Result<Told, TellError> {
+    let taken = contents.records.len();
+    let told = try_to_take(study, journal, contents, matched, observer);
+    if told.is_err() {
+        contents.records.truncate(taken);
+    }
+    told
+}
+
+fn try_to_take(
+    study: &Study,
+    journal: Option<&Journal>,
+    contents: &mut Contents,
+    matched: impl FnOnce(&[DesignPoint], &Ledger) -> Result<MatchedAnswers, TellError>,
+    observer: &dyn Observer,
+) -> Result<Told, TellError> {
+    let known = Ledger::blank(study).knowing(contents);
+    let (before, failure) = step(study, contents, observer);
     if let Some(error) = failure.as_ref().filter(|error| is_interruption(*error)) {
         return Err(AskError::Build(error.clone()).into());
     }
-    let outcome = |point: &[f64]| known.find(point).cloned();
-    let found = match_answers(study, &before.asked, outcome, rows, replaces).map_err(TellError::Rows)?;
+    let found = matched(&before.asked, &known)?;
     // What would end the build must not get into the journal, where it could not be taken back.
     contents.records.extend(found.records.iter().cloned());
     let (after, failure) = match before.is_complete && found.records.is_empty() {
         true => (before, None),
-        false => step(study, &contents, observer),
+        false => step(study, contents, observer),
     };
     match failure {
         Some(error) if is_interruption(&error) => return Err(AskError::Build(error).into()),
         Some(error) => return Err(TellError::CannotGoOn(error)),
         None => {}
     }
-    journal.append(&found.records.iter().collect::<Vec<_>>())?;
+    if let Some(journal) = journal {
+        journal.append(&found.records.iter().collect::<Vec<&Record>>())?;
+    }
     let failed = found.records.iter().filter(|record| matches!(record.outcome, RunOutcome::Failed { .. })).count();
     Ok(Told {
         answered: found.records.len() - failed,

@@ -7,7 +7,7 @@ use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError, Target};
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::probability::inputs::{Germ, Marginal};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use thiserror::Error;
 
 /// Inputs of a numbered run may differ from the design's by this share of their width: tables are written with fewer
@@ -159,6 +159,33 @@ pub fn match_answers(
                 outcomes.insert(i, outcome.clone());
                 matched.records.push(Record { model, point: point.clone(), outcome, seconds: 0.0 });
             }
+        }
+    }
+    if problems.is_empty() { Ok(matched) } else { Err(problems) }
+}
+
+/// The same of runs that are told as they ended: a point is known by the bits of its inputs, and the last answer to it
+/// counts. Problems name the place of a run in the list, from 1, as a line.
+///
+/// # Errors
+///
+/// All points that the design has not asked for; then no run is taken.
+pub fn match_runs(
+    study: &Study,
+    asked: &[DesignPoint],
+    known: impl Fn(&[f64]) -> Option<RunOutcome>,
+    runs: impl Iterator<Item = (Vec<f64>, RunOutcome)>,
+) -> Result<MatchedAnswers, Vec<RowProblem>> {
+    let by_bits: HashSet<Vec<u64>> = asked.iter().map(|asked| bits(&asked.point)).collect();
+    let (mut matched, mut problems) = (MatchedAnswers { records: Vec::new(), repeated: 0 }, Vec::new());
+    let model: [u8; HASH_BYTES] = study.model_hash();
+    for (line, (point, outcome)) in (1..).zip(runs) {
+        if !by_bits.contains(&bits(&point)) {
+            problems.push(RowProblem::NoSuchPoint { line, found: study.inputs.describe(&point) });
+        } else if known(&point).as_ref() == Some(&outcome) {
+            matched.repeated += 1;
+        } else {
+            matched.records.push(Record { model, point, outcome, seconds: 0.0 });
         }
     }
     if problems.is_empty() { Ok(matched) } else { Err(problems) }

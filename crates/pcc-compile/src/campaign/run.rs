@@ -3,7 +3,7 @@
 use super::ledger::{Campaign, Ledger};
 use super::rigid_body_motion::Structure;
 use crate::campaign::journal::{JournalError, RunOutcome};
-use crate::mechanics::model::{Concurrency, Linearization, Model, ModelError};
+use crate::mechanics::model::{Concurrency, Linearization, Model, ModelAnswer, ModelError};
 use crate::mechanics::spectrum::{Computation, Reductions, Slopes, Solution, Spectrum, SpectrumError};
 use crate::numerics::accuracy::Accuracy;
 use crate::study::Study;
@@ -306,7 +306,8 @@ impl<'a> Runner<'a> {
         let run = |point: &Vec<f64>, records_at_once: bool| {
             observer.check()?;
             let start = Instant::now();
-            let result = self.direct_computation(point);
+            let answer = self.model.run(point, self.with_derivatives);
+            let result = answer.and_then(|answer| self.computation(answer));
             self.record(point, result, start.elapsed(), records_at_once, skips, observer)
         };
         match self.model.concurrency() {
@@ -387,13 +388,13 @@ impl<'a> Runner<'a> {
         Ok((spectrum, reductions.filter(|_| self.with_derivatives)))
     }
 
-    fn direct_computation(&self, point: &[f64]) -> Result<Computation, ModelError> {
-        let linearization =
-            if self.with_derivatives { self.model.linearization(point)? } else { self.model.system(point)? };
-        let Some(Linearization { state_matrix, derivatives, second_order, second_order_derivatives }) = linearization
-        else {
-            return Ok(Computation::of_eigenvalues(self.model.eigenvalues(point)?));
+    /// What follows from an answer: eigenvalues, and reduced systems if derivatives are wanted.
+    pub(crate) fn computation(&self, answer: ModelAnswer) -> Result<Computation, ModelError> {
+        let system = match answer {
+            ModelAnswer::Eigenvalues(eigenvalues) => return Ok(Computation::of_eigenvalues(eigenvalues)),
+            ModelAnswer::System(system) => *system,
         };
+        let Linearization { state_matrix, derivatives, second_order, second_order_derivatives } = system;
         if self.with_derivatives {
             let expected = self.study.inputs.dimension();
             let found = derivatives.iter().filter(|derivative| derivative.shape() == state_matrix.shape()).count();

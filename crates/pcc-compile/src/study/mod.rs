@@ -22,7 +22,7 @@ pub use column::TableError;
 pub use dependence::{DependenceError, DependenceSettings, Measure};
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
-pub use model::{Command, ModelSettings, Table};
+pub use model::{Command, Function, FunctionAnswers, ModelSettings, Table};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 pub use settings::{Derivatives, DesignKind, DesignSettings, Enrich, FitSettings, NAMED_SHARES, SpectrumSettings};
@@ -31,6 +31,7 @@ use crate::mechanics::model::matrices::Matrices;
 use crate::mechanics::model::{Clutch, Model, ModelError, TableModel};
 use pcc_evaluate::probability::inputs::InputSpace;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The format of study files this version reads.
 pub const STUDY_FORMAT: u32 = 1;
@@ -114,7 +115,21 @@ impl Study {
             ModelSettings::Matrices(description) => Ok(Box::new(Matrices::new(description, &uncertain)?)),
             ModelSettings::Command(command) => Ok(Box::new(command.program(&uncertain))),
             ModelSettings::Table(_) => Ok(Box::new(TableModel)),
+            ModelSettings::Function(function) => Ok(Box::new(function.model())),
         }
+    }
+
+    /// The same study with the function that its `model.kind = "function"` announces.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError::NotFunction`] if its model is of another kind.
+    pub fn with_function(mut self, function: Arc<dyn Model + Send>) -> Result<Self, ModelError> {
+        match &mut self.model {
+            ModelSettings::Function(settings) => settings.model = Some(function),
+            other => return Err(ModelError::NotFunction { kind: other.kind() }),
+        }
+        Ok(self)
     }
 
     /// Whether fits use derivatives: asked for, or left open for invariants of a model that has them.

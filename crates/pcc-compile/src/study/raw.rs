@@ -58,6 +58,7 @@ pub(super) struct Model {
     pub work: Option<Spanned<String>>,
     pub keep: Option<Spanned<String>>,
     pub version: Option<Spanned<String>>,
+    pub answers: Option<Spanned<String>>,
 }
 
 impl Model {
@@ -85,6 +86,7 @@ impl Model {
             ("eigenvalues", start(&self.eigenvalues)),
             ("on_failure", start(&self.on_failure)),
             ("version", start(&self.version)),
+            ("answers", start(&self.answers)),
         ];
         keys.into_iter().filter_map(|(key, start)| Some((key, start?))).collect()
     }

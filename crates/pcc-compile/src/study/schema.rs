@@ -111,13 +111,15 @@ struct Model {
     /// Command: further attempts at a run that failed. Default 0.
     #[schemars(range(min = 0))]
     retries: Option<i64>,
-    /// Command and table: what becomes of runs that fail.
+    /// Function: what it answers. Default "matrices".
+    answers: Option<FunctionAnswers>,
+    /// Command, table and function: what becomes of runs that fail.
     on_failure: Option<OnFailure>,
     /// Command: folder for the folders of runs, in the current one. Default "runs".
     work: Option<String>,
     /// Command: which folders of runs are kept.
     keep: Option<Keep>,
-    /// Command and table: change it when the model answers otherwise; earlier runs then no longer count.
+    /// Command, table and function: change it when the model answers otherwise; earlier runs then no longer count.
     version: Option<String>,
 }
 
@@ -132,6 +134,17 @@ enum Kind {
     Command,
     /// Answers that something else computes, exchanged as tables by `pcc design` and `pcc ingest`.
     Table,
+    /// A function of the program that reads the study, in Python.
+    Function,
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "kebab-case")]
+enum FunctionAnswers {
+    /// M, C and K of M Ü + C U̇ + K U = 0, or A of ẋ = A x.
+    Matrices,
+    /// All eigenvalues.
+    Eigenvalues,
 }
 
 #[derive(JsonSchema)]

@@ -2,17 +2,19 @@
 
 mod clutch;
 pub mod command;
+mod function;
 pub mod matrices;
 mod parameter;
 mod second_order;
 mod table;
 
 pub use clutch::{CLUTCH_PARAMETERS, Clutch};
+pub use function::FunctionModel;
 pub use parameter::{Parameter, Range};
 pub use second_order::{Linearization, SecondOrder};
 pub use table::TableModel;
 
-use crate::numerics::eigenvalues::EigenvalueError;
+use crate::numerics::eigenvalues::{EigenvalueError, eigenvalues};
 use command::{CommandError, CommandFailure};
 use matrices::MatricesError;
 use nalgebra::Complex;
@@ -59,6 +61,24 @@ pub enum ModelError {
          answers over with pcc ingest STUDY rows.csv"
     )]
     NotRun,
+    /// The model is a function that nobody has given.
+    #[error(
+        "models of kind \"function\" are functions of the program that reads the study: run it there, in Python with \
+         pcc.Study.read(STUDY, model=f)"
+    )]
+    NoFunction,
+    /// A function was given to a model that is none.
+    #[error(
+        "a function takes the place of a model of kind \"function\", and this study's is of kind {kind:?}; leave the function \
+         out, or write kind = \"function\""
+    )]
+    NotFunction {
+        /// The kind of the study's model.
+        kind: &'static str,
+    },
+    /// A function of the user's gave no answer.
+    #[error("{0}")]
+    Function(String),
     /// The mass matrix cannot be inverted.
     #[error("the mass matrix is singular")]
     SingularMass,
@@ -110,10 +130,32 @@ pub enum Concurrency {
     Together,
 }
 
+/// What one run of a model answers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelAnswer {
+    /// The system, of which the eigenvalues follow.
+    System(Box<Linearization>),
+    /// All eigenvalues, in 1/s.
+    Eigenvalues(Vec<Complex<f64>>),
+}
+
+impl ModelAnswer {
+    /// All eigenvalues, in 1/s.
+    ///
+    /// # Errors
+    ///
+    /// [`ModelError::Eigenvalues`] if they cannot be computed.
+    pub fn eigenvalues(self) -> Result<Vec<Complex<f64>>, ModelError> {
+        match self {
+            Self::System(system) => Ok(eigenvalues(system.state_matrix)?),
+            Self::Eigenvalues(eigenvalues) => Ok(eigenvalues),
+        }
+    }
+}
+
 /// A system whose eigenvalues depend on parameters.
 ///
-/// One call of [`Model::eigenvalues`] or of [`Model::linearization`] is one direct computation. Calls come from several
-/// threads at once.
+/// One call of [`Model::run`] is one direct computation. Calls come from several threads at once.
 pub trait Model: Sync {
     /// All eigenvalues λ of the state matrix, in 1/s, at `point`: one value per uncertain input, in the order of the
     /// study's inputs and in physical units.
@@ -146,6 +188,20 @@ pub trait Model: Sync {
     /// As [`Model::eigenvalues`].
     fn system(&self, point: &[f64]) -> Result<Option<Linearization>, ModelError> {
         self.linearization(point)
+    }
+
+    /// One direct computation: the system where the model knows it, with its derivatives if they are wanted, else its
+    /// eigenvalues.
+    ///
+    /// # Errors
+    ///
+    /// As [`Model::eigenvalues`].
+    fn run(&self, point: &[f64], with_derivatives: bool) -> Result<ModelAnswer, ModelError> {
+        let system = if with_derivatives { self.linearization(point)? } else { self.system(point)? };
+        match system {
+            Some(system) => Ok(ModelAnswer::System(Box::new(system))),
+            None => self.eigenvalues(point).map(ModelAnswer::Eigenvalues),
+        }
     }
 
     /// How many runs may go on at once.

@@ -3,10 +3,12 @@
 
 mod clutch;
 mod command;
+mod function;
 mod matrices;
 mod table;
 
 pub use command::Command;
+pub use function::{Function, FunctionAnswers};
 pub use table::Table;
 
 use super::error::{Place, StudyError};
@@ -38,6 +40,8 @@ pub enum ModelSettings {
     Command(Command),
     /// Nothing that pcc runs: answers come in tables.
     Table(Table),
+    /// A function of the program that reads the study.
+    Function(Function),
 }
 
 /// Kinds of models.
@@ -47,10 +51,16 @@ pub(super) enum Kind {
     Matrices,
     Command,
     Table,
+    Function,
 }
 
-const KINDS: [(&str, Kind); 4] =
-    [("clutch", Kind::Clutch), ("matrices", Kind::Matrices), ("command", Kind::Command), ("table", Kind::Table)];
+const KINDS: [(&str, Kind); 5] = [
+    ("clutch", Kind::Clutch),
+    ("matrices", Kind::Matrices),
+    ("command", Kind::Command),
+    ("table", Kind::Table),
+    ("function", Kind::Function),
+];
 
 impl Kind {
     /// Whether the kind has a key beside `kind` and `constants`, which all have.
@@ -60,6 +70,7 @@ impl Kind {
             Self::Matrices => matrices::KEYS.contains(&key),
             Self::Command => command::KEYS.contains(&key) || table::KEYS.contains(&key),
             Self::Table => table::KEYS.contains(&key),
+            Self::Function => function::KEYS.contains(&key),
         }
     }
 
@@ -67,7 +78,7 @@ impl Kind {
     pub fn default_target(self) -> Target {
         match self {
             Self::Clutch => Target::Eigenvalues,
-            Self::Matrices | Self::Command | Self::Table => Target::Invariants,
+            Self::Matrices | Self::Command | Self::Table | Self::Function => Target::Invariants,
         }
     }
 }
@@ -80,6 +91,7 @@ impl ModelSettings {
             Self::Matrices(_) => "matrices",
             Self::Command(_) => "command",
             Self::Table(_) => "table",
+            Self::Function(_) => "function",
         }
     }
 
@@ -89,18 +101,24 @@ impl ModelSettings {
             Self::Clutch { .. } | Self::Matrices(_) => false,
             Self::Command(command) => command.answers.skips_failures,
             Self::Table(table) => table.skips_failures,
+            Self::Function(function) => function.skips_failures,
         }
     }
 
-    /// Whether a run is a program's, which may take hours, and not pcc's own.
+    /// Whether a run is a program's or an unknown function's, which may take hours. Of matrices pcc computes the
+    /// eigenvalues itself, whoever assembles them.
     pub fn is_external(&self) -> bool {
-        matches!(self, Self::Command(_) | Self::Table(_))
+        match self {
+            Self::Clutch { .. } | Self::Matrices(_) => false,
+            Self::Command(_) | Self::Table(_) => true,
+            Self::Function(function) => function.answers == FunctionAnswers::Eigenvalues,
+        }
     }
 
     /// What runs of programs and tables answer.
     pub fn answers(&self) -> Option<&Table> {
         match self {
-            Self::Clutch { .. } | Self::Matrices(_) => None,
+            Self::Clutch { .. } | Self::Matrices(_) | Self::Function(_) => None,
             Self::Command(command) => Some(&command.answers),
             Self::Table(table) => Some(table),
         }
@@ -111,6 +129,7 @@ impl ModelSettings {
         match self {
             Self::Clutch { .. } | Self::Matrices(_) => true,
             Self::Command(_) | Self::Table(_) => false,
+            Self::Function(function) => function.answers == FunctionAnswers::Matrices,
         }
     }
 }
@@ -134,6 +153,7 @@ impl Lines<'_> {
             Kind::Matrices => self.description(raw, constants, inputs, folder),
             Kind::Command => self.command(raw, constants, folder),
             Kind::Table => Ok(ModelSettings::Table(self.table(&mut raw, constants)?)),
+            Kind::Function => self.function(raw, constants),
         }
     }
 
@@ -219,6 +239,10 @@ pub(super) fn print(file: &mut Printer, model: &ModelSettings) {
             table::print(file, settings);
             &settings.constants
         }
+        ModelSettings::Function(settings) => {
+            function::print(file, settings);
+            &settings.constants
+        }
     };
     if !constants.is_empty() {
         file.table("model.constants");
@@ -247,6 +271,7 @@ pub(super) fn identity(model: &ModelSettings, inputs: &InputSpace) -> String {
         ModelSettings::Matrices(description) => matrices::identify(&mut text, description),
         ModelSettings::Command(command) => command::identify(&mut text, command),
         ModelSettings::Table(table) => table::identify(&mut text, table),
+        ModelSettings::Function(function) => function::identify(&mut text, function),
     }
     text
 }

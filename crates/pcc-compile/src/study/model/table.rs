@@ -35,24 +35,32 @@ impl Lines<'_> {
             key: "eigenvalues",
             meaning: "how many eigenvalues each run answers",
         })?;
-        let skips_failures = match raw.on_failure.take() {
-            None => false,
-            Some(word) => self.word("model.on_failure", &word, &[("stop", false), ("skip", true)])?,
-        };
         Ok(Table {
             eigenvalues: self.integer("model.eigenvalues", eigenvalues, 1..=MOST_EIGENVALUES)? as usize,
             constants,
             version: raw.version.take().map_or(defaults::VERSION.to_owned(), Spanned::into_inner),
-            skips_failures,
+            skips_failures: self.skips_failures(raw)?,
         })
+    }
+
+    /// Whether runs that fail are left out.
+    pub(super) fn skips_failures(&self, raw: &mut raw::Model) -> Result<bool, StudyError> {
+        match raw.on_failure.take() {
+            None => Ok(false),
+            Some(word) => self.word("model.on_failure", &word, &[("stop", false), ("skip", true)]),
+        }
     }
 }
 
 pub(super) fn print(file: &mut Printer, settings: &Table) {
     file.line("eigenvalues", settings.eigenvalues, "that each run answers");
-    let policy = if settings.skips_failures { "skip" } else { "stop" };
-    file.line("on_failure", format!("{policy:?}"), "of a run: \"stop\" the build, or \"skip\" the run and report it");
+    print_policy(file, settings.skips_failures);
     file.line("version", super::quoted(&settings.version), "change it when the program answers otherwise");
+}
+
+pub(super) fn print_policy(file: &mut Printer, skips_failures: bool) {
+    let policy = if skips_failures { "skip" } else { "stop" };
+    file.line("on_failure", format!("{policy:?}"), "of a run: \"stop\" the build, or \"skip\" the run and report it");
 }
 
 /// What is asked and answered, as text for hashes.
