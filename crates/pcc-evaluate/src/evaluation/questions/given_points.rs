@@ -1,15 +1,16 @@
 //! A surrogate at points that somebody gives, in parallel.
 
 use crate::components::Verdict;
-use crate::evaluation::kernel::lanes::Lanes;
+use crate::evaluation::kernel::lanes::{BLOCK_POINTS, Lanes};
 use crate::evaluation::kernel::plan::Plan;
 use crate::evaluation::kernel::points::{Evaluator, top};
 use crate::evaluation::kernel::results::Results;
 use crate::foundation::{Interrupted, Observer};
-use crate::probability::inputs::{InputError, InputSpace};
+use crate::probability::inputs::{InputError, Marginal};
 use crate::surrogate::Surrogate;
 use num_complex::Complex;
 use rayon::prelude::*;
+use std::cell::Cell;
 use thiserror::Error;
 
 /// Points that a thread evaluates before it looks whether to stop: they stay in the nearest cache.
@@ -144,10 +145,8 @@ impl GivenPoints<'_> {
                 |evaluator, (number, (rows, found))| {
                     observer.check()?;
                     let points = rows.len() / dimension;
-                    self.check(rows, number * CHUNK)?;
-                    let mut bad = None;
-                    let mut done = 0;
-                    evaluator.each_block(points, standardized(inputs, rows), |_, results, lanes| {
+                    let (mut bad, mut done, is_outside) = (None, 0, Cell::new(false));
+                    evaluator.each_block(points, self.standardized(rows, &is_outside), |_, results, lanes| {
                         for lane in 0..lanes {
                             if !results.max_re.0[lane].is_finite() {
                                 bad.get_or_insert(done + lane);
@@ -157,6 +156,9 @@ impl GivenPoints<'_> {
                         done += lanes;
                     });
                     observer.advance(points as u64);
+                    if is_outside.get() {
+                        self.check(rows, number * CHUNK)?;
+                    }
                     let Some(at) = bad else { return Ok(()) };
                     let point = inputs.describe(&rows[at * dimension..][..dimension]);
                     Err(PointError::NotFinite { row: number * CHUNK + at, point })
@@ -167,23 +169,40 @@ impl GivenPoints<'_> {
         outcomes.into_iter().collect()
     }
 
+    /// Writes the standardized coordinates of the points from a number on into lanes, and says if one is no point of
+    /// the domain: which one is looked for afterwards.
+    fn standardized(&self, rows: &[f64], is_outside: &Cell<bool>) -> impl FnMut(usize, &mut [Lanes]) {
+        let inputs = self.surrogate.inputs.inputs();
+        move |start, lanes| {
+            let points = rows[start * inputs.len()..].chunks_exact(inputs.len());
+            let count = points.len().min(BLOCK_POINTS);
+            for (j, (input, coordinate)) in inputs.iter().zip(lanes).enumerate() {
+                let values = &mut coordinate.0[..count];
+                values.iter_mut().zip(points.clone()).for_each(|(value, point)| *value = point[j]);
+                if !self.are_inside(&input.marginal, values) {
+                    is_outside.set(true);
+                }
+                values.iter_mut().for_each(|value| *value = input.marginal.standardized(*value));
+            }
+        }
+    }
+
+    /// Whether all values are numbers, and in the support unless that does not matter. Supports are intervals, so that
+    /// the least and the largest value say it.
+    fn are_inside(&self, law: &Marginal, values: &[f64]) -> bool {
+        let (mut lower, mut upper, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
+        for &value in values {
+            lower = if value < lower { value } else { lower };
+            upper = if value > upper { value } else { upper };
+            // 0 · x is no number where x is none, and where it is infinite.
+            sum += 0.0 * value;
+        }
+        sum == 0.0 && (self.extrapolates || (law.contains(lower) && law.contains(upper)))
+    }
+
     /// Refuses what is no point of the domain.
     fn check(&self, rows: &[f64], first: usize) -> Result<(), PointError> {
         let inputs = &self.surrogate.inputs;
-        // Domains are boxes, so that the ends of all values say whether there is something to look for.
-        let are_inside = inputs.inputs().iter().enumerate().all(|(j, input)| {
-            let values = rows.iter().skip(j).step_by(inputs.dimension());
-            let (mut lower, mut upper, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
-            for &value in values {
-                (lower, upper, sum) = (value.min(lower), value.max(upper), sum + 0.0 * value);
-            }
-            // 0 · x is no number where x is none, and where it is infinite.
-            let is_number = sum == 0.0;
-            is_number && (self.extrapolates || (input.marginal.contains(lower) && input.marginal.contains(upper)))
-        });
-        if are_inside {
-            return Ok(());
-        }
         for (row, point) in (first..).zip(rows.chunks_exact(inputs.dimension())) {
             if let Some(j) = point.iter().position(|value| !value.is_finite()) {
                 let name = inputs.inputs()[j].name.clone();
@@ -194,19 +213,6 @@ impl GivenPoints<'_> {
             }
         }
         Ok(())
-    }
-}
-
-/// Writes the standardized coordinates of the points from a number on into lanes.
-fn standardized<'a>(inputs: &'a InputSpace, rows: &'a [f64]) -> impl FnMut(usize, &mut [Lanes]) + 'a {
-    let dimension = inputs.dimension();
-    move |start, lanes| {
-        for (j, (input, coordinate)) in inputs.inputs().iter().zip(lanes).enumerate() {
-            let values = rows[start * dimension..].iter().skip(j).step_by(dimension);
-            for (xi, &value) in coordinate.0.iter_mut().zip(values) {
-                *xi = input.marginal.standardized(value);
-            }
-        }
     }
 }
 

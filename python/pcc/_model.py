@@ -1,0 +1,176 @@
+"""Functions as models: what they answer, checked and in one form."""
+
+from __future__ import annotations
+
+import os
+import threading
+import traceback
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _differences
+from ._errors import AnswerError
+
+#: What a function is to return.
+FORMS = "return M, C, K; or A; or eigenvalues"
+
+
+class Function:
+    """A function of the user's with the study that it belongs to, as the library calls it.
+
+    A call with the values of the inputs, in their order, gives the form of the answer ("second order", "first order" or
+    "eigenvalues"), its numbers, and the derivatives of matrices by each input if they are wanted.
+    """
+
+    def __init__(self, function: Callable, study: Any) -> None:
+        self.function = function
+        self.study = study
+        self.names = list(study.names)
+        self.constants = dict(study.constants)
+        self.answers = study.answers
+        self._steps: list[float] | None = None
+        self._lock = threading.Lock()
+
+    def __call__(self, values: list, with_derivatives: bool) -> tuple[str, np.ndarray, np.ndarray | None]:
+        form, numbers, given = self._answer(values)
+        if kind_of(form) != self.answers:
+            raise AnswerError(
+                f'the function has returned {kind_of(form)}, but the study says answers = "{self.answers}"'
+            )
+        if form == "eigenvalues" or not with_derivatives:
+            return form, numbers, None
+        return form, numbers, self._derivatives(values, numbers, given)
+
+    def _answer(self, values: list) -> tuple[str, np.ndarray, Mapping]:
+        answer = self.function(**dict(zip(self.names, values)), **self.constants)
+        return read(answer)
+
+    def _derivatives(self, values: list, numbers: np.ndarray, given: Mapping) -> np.ndarray:
+        unknown = [str(name) for name in given if name not in self.names]
+        if unknown:
+            raise AnswerError(f"derivatives by {', '.join(unknown)}, but the inputs are {', '.join(self.names)}")
+        found = np.empty((len(self.names), *numbers.shape))
+        for j, name in enumerate(self.names):
+            if name in given:
+                found[j] = _given(given[name], name, numbers.shape)
+            else:
+                found[j] = _differences.derivative(self._matrices, self.study, values, numbers, j, self._step(j, given))
+        return found
+
+    def _matrices(self, values: list) -> np.ndarray:
+        return self._answer(values)[1]
+
+    def _step(self, j: int, given: Mapping) -> float:
+        """The step of an input, chosen at the first run that needs it: the same whatever the run."""
+        with self._lock:
+            if self._steps is None:
+                middle = self.study.medians
+                at_middle = self._matrices(middle)
+                choose = lambda j: _differences.best_step(self._matrices, self.study, middle, at_middle, j)  # noqa: E731
+                self._steps = [0.0 if name in given else choose(j) for j, name in enumerate(self.names)]
+            return self._steps[j]
+
+
+def kind_of(form: str) -> str:
+    """What a study calls answers of this form."""
+    return "eigenvalues" if form == "eigenvalues" else "matrices"
+
+
+def read(answer: Any) -> tuple[str, np.ndarray, Mapping]:
+    """The form of an answer, its numbers, and the derivatives that came with it."""
+    if isinstance(answer, Iterator) or answer is None or isinstance(answer, (str, bytes, Mapping)):
+        kind = "None" if answer is None else f"a {type(answer).__name__}"
+        raise AnswerError(f"the function has returned {kind}; {FORMS}")
+    given: Mapping = {}
+    if isinstance(answer, tuple) and answer and isinstance(answer[-1], Mapping):
+        *parts, given = answer
+        answer = tuple(parts) if len(parts) != 1 else parts[0]
+    if isinstance(answer, (tuple, list)) and len(answer) and any(_dimensions(part) == 2 for part in answer):
+        if len(answer) != 3:
+            raise AnswerError(f"the function has returned {len(answer)} matrices; {FORMS}, with None for a C of zeros")
+        mass, damping, stiffness = answer
+        sized = _matrix(mass, "M")
+        parts = [sized, np.zeros_like(sized) if damping is None else _matrix(damping, "C"), _matrix(stiffness, "K")]
+        for name, part in zip("CK", parts[1:]):
+            if part.shape != sized.shape:
+                raise AnswerError(f"{name} is {_size(part)}, but M is {_size(sized)}")
+        return "second order", np.ascontiguousarray(parts), given
+    if isinstance(answer, tuple) and all(_dimensions(part) == 0 for part in answer):
+        raise AnswerError(
+            "the function has returned a tuple of numbers; for one degree of freedom return np.array([[m]]), np.array([[c]]), "
+            "np.array([[k]]), for eigenvalues an array of them"
+        )
+    if _dimensions(answer) == 2:
+        return "first order", np.ascontiguousarray([_matrix(answer, "A")]), given
+    return "eigenvalues", _eigenvalues(answer), given
+
+
+def _dimensions(part: Any) -> int:
+    try:
+        return part.ndim if hasattr(part, "ndim") else np.ndim(part)
+    except ValueError:
+        return -1
+
+
+def _matrix(part: Any, name: str) -> np.ndarray:
+    if hasattr(part, "toarray"):
+        part = part.toarray()
+    matrix = np.asarray(part)
+    if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.size == 0:
+        raise AnswerError(f"{name} is {_size(matrix)}; it must be square")
+    if matrix.dtype.kind not in "fiu":
+        raise AnswerError(f"{name} is of type {matrix.dtype}; its entries must be real numbers")
+    matrix = matrix.astype(np.float64, copy=False)
+    if not np.isfinite(matrix).all():
+        row, column = np.argwhere(~np.isfinite(matrix))[0]
+        raise AnswerError(f"{name}[{row}, {column}] is {matrix[row, column]}, no finite number")
+    return matrix
+
+
+def _eigenvalues(answer: Any) -> np.ndarray:
+    try:
+        found = np.asarray(answer)
+    except (ValueError, TypeError) as error:
+        raise AnswerError(f"the function has returned what is no array: {error}; {FORMS}") from error
+    if found.ndim != 1 or found.size == 0 or found.dtype.kind not in "fiuc":
+        raise AnswerError(f"the function has returned an array of type {found.dtype} and shape {found.shape}; {FORMS}")
+    found = np.ascontiguousarray(found, dtype=np.complex128)
+    if not np.isfinite(found).all():
+        raise AnswerError(
+            f"eigenvalue {int(np.argmin(np.isfinite(found)))} is {found[~np.isfinite(found)][0]}, no finite number"
+        )
+    return found
+
+
+def _given(derivative: Any, name: str, shape: tuple[int, ...]) -> np.ndarray:
+    """The derivatives of all matrices by an input, of which None are zeros."""
+    parts = derivative if shape[0] > 1 else (derivative,)
+    if shape[0] > 1 and (not isinstance(parts, (tuple, list)) or len(parts) != shape[0]):
+        raise AnswerError(f"the derivatives by {name} must be three matrices, dM, dC, dK, with None for zeros")
+    found = np.zeros(shape)
+    for k, part in enumerate(parts):
+        if part is not None:
+            matrix = _matrix(part, f"the derivative by {name}")
+            if matrix.shape != shape[1:]:
+                raise AnswerError(
+                    f"the derivative by {name} is {_size(matrix)}, but the matrix {shape[1]} × {shape[2]}"
+                )
+            found[k] = matrix
+    return found
+
+
+def _size(matrix: np.ndarray) -> str:
+    return " × ".join(map(str, matrix.shape)) if matrix.ndim else "a number"
+
+
+def describe(error: BaseException) -> str:
+    """An exception in a line: its kind, what it says, and where it was raised."""
+    if isinstance(error, AnswerError):
+        return str(error)
+    said = "".join(traceback.format_exception_only(type(error), error)).strip().splitlines()[-1]
+    own = os.path.dirname(os.path.abspath(__file__))
+    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if os.path.dirname(frame.filename) != own]
+    place = f" ({os.path.basename(frames[-1].filename)}, line {frames[-1].lineno})" if frames else ""
+    return said + place

@@ -1,0 +1,85 @@
+"""Builds whose runs somebody else makes."""
+
+from __future__ import annotations
+
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+import systems
+from conftest import OSCILLATOR
+
+import pcc
+
+
+def answers(study: pcc.Study, X: np.ndarray) -> list:
+    return [study.answer(**dict(zip(study.names, x))) for x in X]
+
+
+def run(task):
+    study, x = task
+    return study.answer(**dict(zip(study.names, x)))
+
+
+def test_told_answers_make_the_bytes_of_a_direct_build(built, oscillator):
+    builder, steps = pcc.Builder(oscillator), 0
+    while len(X := builder.ask()):
+        half, steps = len(X) // 2, steps + 1
+        builder.tell(X[half:], answers(oscillator, X[half:]))
+        assert builder.ask().tolist() == X[:half].tolist()
+        if half:
+            builder.tell(X[:half], answers(oscillator, X[:half]))
+    assert steps > 1 and builder.result.to_bytes() == built.to_bytes()
+
+
+def test_processes_answer_with_joblib(built, oscillator):
+    joblib = pytest.importorskip("joblib")
+    builder = pcc.Builder(oscillator)
+    with joblib.Parallel(n_jobs=2) as parallel:
+        while len(X := builder.ask()):
+            builder.tell(X, parallel(joblib.delayed(run)((oscillator, x)) for x in X))
+    assert builder.result == built
+
+
+def test_processes_answer_with_futures(oscillator):
+    study = pcc.Study(OSCILLATOR, systems.eigenvalues_of_oscillator)
+    builder = pcc.Builder(study)
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
+        while len(X := builder.ask()):
+            builder.tell(X, list(executor.map(run, [(study, x) for x in X])))
+    assert builder.result == pcc.build(study)
+
+
+def test_a_journal_keeps_answers(tmp_path, built, oscillator):
+    builder = pcc.Builder(oscillator, journal=tmp_path / "j")
+    X = builder.ask()
+    builder.tell(X, answers(oscillator, X))
+    del builder
+    builder = pcc.Builder(oscillator, journal=tmp_path / "j")
+    assert builder.ask().tolist() != X.tolist()
+    assert pcc.build(oscillator) == built
+
+
+def test_answers_that_cannot_be_taken_are_refused(oscillator):
+    builder = pcc.Builder(oscillator)
+    X = builder.ask()
+    with pytest.raises(pcc.TellError, match="2 points and 1 answers"):
+        builder.tell(X[:2], answers(oscillator, X[:1]))
+    with pytest.raises(pcc.TellError, match="no point that the design has asked for"):
+        builder.tell(X[:1] * (1 + 1e-12), answers(oscillator, X[:1]))
+    with pytest.raises(pcc.TellError, match="answer 0 has no derivatives by k, c"):
+        builder.tell(X[:1], [systems.oscillator(*X[0])])
+    with pytest.raises(pcc.TellError, match="answer 0: the function has returned None"):
+        builder.tell(X[:1], [None])
+    with pytest.raises(pcc.BuildError, match="not answered yet"):
+        _ = builder.result
+    assert builder.ask().tolist() == X.tolist()
+
+
+def test_failures_are_told_and_skipped():
+    study = pcc.Study(OSCILLATOR, systems.eigenvalues_of_oscillator, on_failure="skip")
+    builder = pcc.Builder(study)
+    while len(X := builder.ask()):
+        builder.tell(X, [ValueError("no") if k > 109 else run((study, (k, c))) for k, c in X])
+    assert abs(builder.result.sample(10_000).stable - 0.75) < 0.05

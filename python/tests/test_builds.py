@@ -1,0 +1,156 @@
+"""Functions as models."""
+
+from __future__ import annotations
+
+import logging
+import pickle
+
+import numpy as np
+import pytest
+import systems
+from conftest import OSCILLATOR
+
+import pcc
+
+
+def runs(surrogate: pcc.Surrogate) -> int:
+    return surrogate.inspect()["direct_computations"]
+
+
+@pytest.mark.parametrize("name, function", [("clutch-r3", systems.clutch), ("flutter", systems.flutter)])
+def test_functions_of_matrices_build_what_studies_build(name, function, shipped):
+    written = pcc.Study.read(shipped / f"{name}.toml")
+    text = (shipped / f"{name}.toml").read_text()
+    inputs = text[text.index("[inputs]") :]
+    study = pcc.Study.from_toml(f'format = 1\nname = "{name}"\n[model]\nkind = "function"\n{inputs}', function)
+    assert study.uses_derivatives and study.names == written.names
+    by_study, by_function = pcc.build(written), pcc.build(study)
+    assert runs(by_function) == runs(by_study)
+    wrong = by_function.compare(n=3000).misclassified
+    assert wrong <= max(2 * by_study.compare(written, n=3000).misclassified, 1 / 3000)
+    assert abs(by_function.sample(100_000).stable - by_study.sample(100_000).stable) < 0.002
+
+
+def test_derivatives_may_be_given_and_matrices_sparse(built):
+    sparse = pytest.importorskip("scipy.sparse")
+
+    def second_order(k, c):
+        one = sparse.csr_matrix([[1.0]])
+        return one, sparse.coo_array([[c]]), k * one, {"k": (None, None, one), "c": (None, one, np.zeros((1, 1)))}
+
+    def first_order(k, c):
+        return systems.oscillator(k, c), {"c": np.array([[0.0, 0.0], [0.0, -1.0]])}
+
+    for function in (second_order, first_order):
+        found = pcc.build(pcc.Study(OSCILLATOR, function))
+        assert runs(found) == runs(built)
+        assert abs(found.sample(100_000).stable - 0.75) < 0.005
+
+
+def test_functions_of_eigenvalues_are_called_once_a_run():
+    calls = []
+
+    def eigenvalues(k, c):
+        calls.append((k, c))
+        return systems.eigenvalues_of_oscillator(k, c)
+
+    study = pcc.Study(OSCILLATOR, eigenvalues)
+    assert calls == [(100.0, 0.1)] and not study.uses_derivatives
+    found = pcc.build(study)
+    assert len(calls) == 1 + runs(found)
+    assert abs(found.sample(100_000).stable - 0.75) < 0.005
+    assert pcc.Study(OSCILLATOR, eigenvalues, answers="eigenvalues") and len(calls) == 1 + runs(found)
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_builds_have_the_same_bytes_however_they_are_called(jobs, built):
+    assert pcc.build(pcc.Study(OSCILLATOR, systems.oscillator), jobs=jobs).to_bytes() == built.to_bytes()
+
+
+def test_laws_and_settings_are_those_of_study_files():
+    laws = {
+        "a": pcc.normal(2100, cv=0.05), "b": pcc.lognormal(median=1.0, cv=0.2, unit="N/m"), "c": pcc.beta(2, 3, lower=0.0, upper=2.0),
+        "d": pcc.uniform(nominal=16e6, spread="5%"), "e": pcc.gumbel(1.0, 0.1), "f": pcc.weibull(2.0, 1.0),
+        "g": pcc.log_uniform(1, 10), "h": pcc.exponential(2.0), "i": pcc.triangular(0, 1, 3), "j": pcc.gamma(3.0, 1.0),
+        "k": pcc.discrete([1, 2, 4]), "l": {"distribution": "uniform", "lower": 0, "upper": 1},
+    }  # fmt: skip
+    study = pcc.Study(
+        laws, lambda **x: np.diag([-v - 1 for v in x.values()]), name="all-laws", seed=7, answers="matrices",
+        dependence={"kind": "gaussian-copula", "spearman": [["a", "b", 0.5]]}, fit={"max_degree": 4},
+        spectrum={"margin": {"damping_ratio": 0.01}}, design={"maximum": 200},
+    )  # fmt: skip
+    text = study.to_toml()
+    assert study.names == list(laws) and 'name = "all-laws"' in text and "max_degree = 4" in text
+    assert pcc.Study.from_toml(text, study._model).to_toml() == text
+    assert repr(pcc.uniform(0, 0.5)) == "pcc.uniform(lower=0, upper=0.5)"
+    assert pickle.loads(pickle.dumps(pcc.Study(OSCILLATOR, systems.oscillator))).to_toml()
+
+
+def test_constants_are_handed_over():
+    study = pcc.Study({"k": pcc.uniform(90, 110)}, systems.oscillator, constants={"c": 0.1})
+    assert study.answer(k=100.0)[1][0].tolist() == [[0.0, 1.0], [-100.0, -0.1]]
+
+
+def test_runs_that_raise_carry_inputs_and_traceback():
+    def fails(k, c):
+        if c < 0.0:
+            raise ZeroDivisionError("no such damper")
+        return systems.oscillator(k, c)
+
+    sentence = (
+        r"the model run at k = .*, c = -.* failed: ZeroDivisionError: no such damper \(test_builds.py, line \d+\)"
+    )
+    with pytest.raises(pcc.RunError, match=sentence) as caught:
+        pcc.build(pcc.Study(OSCILLATOR, fails))
+    assert caught.value.inputs["c"] < 0.0 and isinstance(caught.value.__cause__, ZeroDivisionError)
+    assert caught.value.__cause__.__traceback__.tb_next is not None
+    assert pickle.loads(pickle.dumps(caught.value)).inputs == caught.value.inputs
+
+
+def test_runs_that_raise_may_be_skipped(tmp_path):
+    def fails(k, c):
+        if k > 108.0:
+            raise RuntimeError("too stiff")
+        return systems.eigenvalues_of_oscillator(k, c)
+
+    study = pcc.Study(OSCILLATOR, fails, on_failure="skip")
+    with pytest.warns(RuntimeWarning, match="model runs? failed and .* skipped; the first at k = 10.*too stiff"):
+        found = pcc.build(study, journal=tmp_path / "runs.journal")
+    assert any("did not answer" in text or "answer" in text for text in found.sample(10_000).warnings)
+
+
+def test_a_journal_keeps_runs(tmp_path, caplog):
+    calls = []
+
+    def counted(k, c):
+        calls.append(k)
+        if len(calls) == 30:
+            raise OSError("the licence server is gone")
+        return systems.eigenvalues_of_oscillator(k, c)
+
+    study = pcc.Study(OSCILLATOR, counted, answers="eigenvalues", version="2")
+    with pytest.raises(pcc.RunError, match="licence server"):
+        pcc.build(study, journal=tmp_path / "j")
+    before = len(calls)
+    with caplog.at_level(logging.INFO, "pcc"):
+        found = pcc.build(study, journal=tmp_path / "j")
+    assert runs(found) <= len(calls) < runs(found) + before
+    assert any("recorded" in record.message for record in caplog.records)
+    assert found == pcc.build(study)
+
+
+def test_surrogates_are_certified_and_compared(built):
+    found = pcc.Surrogate.from_bytes(built.to_bytes())
+    with pytest.raises(pcc.QuestionError, match="give the study"):
+        found.certify(runs=50)
+    study = pcc.Study(OSCILLATOR, systems.oscillator)
+    certificate = found.certify(study, runs=50)
+    assert certificate.lower < 0.75 < certificate.upper and certificate.level == pytest.approx(0.9)
+    assert found != built and "written to" not in repr(certificate) and len(found.inspect()["certificates"]) == 1
+    with pytest.raises(pcc.QuestionError, match="seed 1 already"):
+        found.certify(study, runs=50)
+    compared = pcc.build(study).compare(systems.oscillator, 500)
+    assert compared.misclassified < 0.01 and compared.to_dict()["samples"] == 500
+    other = pcc.Study(OSCILLATOR | {"c": pcc.uniform(0, 1)}, systems.oscillator)
+    with pytest.raises(pcc.Error, match="another"):
+        built.compare(other, 10)
