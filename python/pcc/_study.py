@@ -72,19 +72,22 @@ class Study:
         if not isinstance(inputs, Mapping) or not all(isinstance(law, Mapping) for law in inputs.values()):
             raise StudyError('inputs is no dict of laws; write inputs={"mu": pcc.uniform(0, 0.5)}')
 
-        def text(answers: str) -> str:
+        others = {"spectrum": spectrum, "design": design, "fit": fit, "dependence": dependence}
+
+        def text(answers: str, others: Mapping[str, Any]) -> str:
             of_model: dict[str, Any] = {"kind": "function", "answers": answers}
             of_model |= {"on_failure": on_failure, "version": version}
             tables: dict[str, Any] = {"format": 1, "name": name, "seed": seed, "model": of_model}
             if constants:
                 of_model["constants"] = dict(constants)
             tables["inputs"] = dict(inputs)
-            others = {"spectrum": spectrum, "design": design, "fit": fit, "dependence": dependence}
             return study_text(tables | {table: keys for table, keys in others.items() if keys})
 
         if answers is None:
-            answers = _probe(_from_text(text("eigenvalues"), "."), model)
-        self._set(text(answers), os.getcwd(), _from_text(text(answers), "."), model)
+            # What is fitted may need what is not known yet.
+            answers = _probe(_from_text(text("eigenvalues", {}), "."), model)
+        written = text(answers, others)
+        self._set(written, os.getcwd(), _from_text(written, "."), model)
 
     def _set(self, text: str, folder: str, native: _pcc.Study, model: Callable[..., Any] | None) -> None:
         self._text, self._folder, self._function = text, folder, None

@@ -37,6 +37,13 @@ def _plate(mu, l, r, contacts, f):  # noqa: E741
     ])  # fmt: skip
 
 
+def rotor(omega, c_internal, c_external, k, anisotropy):
+    """The rotor of surrogates/rotor.toml."""
+    g = c_internal * omega
+    stiffness = np.array([[k * (1 + anisotropy), g], [-g, k * (1 - anisotropy)]])
+    return 10.0 * np.eye(2), (c_internal + c_external) * np.eye(2), stiffness
+
+
 def flutter(airspeed, k_theta, s, rho, c_h):
     """The wing section of surrogates/flutter.toml."""
     m, inertia, b, e, k_h, c_theta = 5.0, 0.025, 0.15, 0.045, 1800.0, 0.02

@@ -17,7 +17,9 @@ def runs(surrogate: pcc.Surrogate) -> int:
     return surrogate.inspect()["direct_computations"]
 
 
-@pytest.mark.parametrize("name, function", [("clutch-r3", systems.clutch), ("flutter", systems.flutter)])
+@pytest.mark.parametrize(
+    "name, function", [("clutch-r3", systems.clutch), ("flutter", systems.flutter), ("rotor", systems.rotor)]
+)
 def test_functions_of_matrices_build_what_studies_build(name, function, shipped):
     written = pcc.Study.read(shipped / f"{name}.toml")
     text = (shipped / f"{name}.toml").read_text()
@@ -84,6 +86,13 @@ def test_laws_and_settings_are_those_of_study_files():
     assert pcc.Study.from_toml(text, study._model).to_toml() == text
     assert repr(pcc.uniform(0, 0.5)) == "pcc.uniform(lower=0, upper=0.5)"
     assert pickle.loads(pickle.dumps(pcc.Study(OSCILLATOR, systems.oscillator))).to_toml()
+
+
+def test_what_is_fitted_may_need_what_the_function_returns():
+    assert pcc.Study(OSCILLATOR, systems.oscillator, fit={"derivatives": True}).uses_derivatives
+    assert not pcc.Study(OSCILLATOR, systems.oscillator, fit={"derivatives": False}).uses_derivatives
+    with pytest.raises(pcc.StudyError, match="fit.derivatives"):
+        pcc.Study(OSCILLATOR, systems.eigenvalues_of_oscillator, fit={"derivatives": True})
 
 
 def test_constants_are_handed_over():
