@@ -1,9 +1,9 @@
 //! What laws of inputs cost in an evaluation.
 //!
-//! `cargo bench -p pcc-tools --bench laws` builds the clutch with eight inputs of every kind of law, all of the mean and
-//! the variance of the uniform ones, and evaluates all surrogates on one thread, in turn and several times. Best times
-//! are printed: other work on the machine can only slow one down. Surrogates differ in the number of their terms, so
-//! the kernel alone is beside the whole; what is left is random numbers, quantiles and statistics.
+//! `cargo bench -p pcc-tools --bench laws` builds the clutch with eight inputs of every kind of law, all of the mean
+//! and the variance of the uniform ones, and evaluates all surrogates on one thread, in turn and several times. Best
+//! times are printed: other work on the machine can only slow one down. Surrogates differ in the number of their terms,
+//! so the kernel alone is beside the whole; what is left is random numbers, quantiles and statistics.
 
 use pcc::report::{Align, Table};
 use pcc_compile::compilation::build;

@@ -134,8 +134,8 @@ fn undamped_systems_are_marginal_where_they_neither_flutter_nor_diverge() {
     }
 }
 
-/// Sixteen masses on a string that turns: more bands of flutter than so few runs can tell. The surrogate calls all points
-/// unstable, whatever residual is added to it, and its own runs contradict it.
+/// Sixteen masses on a string that turns: more bands of flutter than so few runs can tell. The surrogate calls all
+/// points unstable, whatever residual is added to it, and its own runs contradict it.
 #[test]
 fn fits_that_their_own_runs_contradict_do_not_look_exact() {
     let mut study = study("spin-16");

@@ -24,8 +24,9 @@
 //! modes the surrogate carries: modes left out, or real eigenvalues. More runs do not lower f, so the build does not
 //! ask for them.
 //!
-//! All of this supposes fits that are good: of a poor one, the points may all lie on one side whatever residual is added.
-//! Where more runs are misjudged by the fit without them than ε explains, their share is an error that counts, too.
+//! All of this supposes fits that are good: of a poor one, the points may all lie on one side whatever residual is
+//! added. Where more runs are misjudged by the fit without them than ε explains, their share is an error that counts,
+//! too.
 //!
 //! Residuals of points that chose the settings of a fit flatter it, so rms and mean use blind residuals
 //! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the
