@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import html
 import json
 import os
 import re
-import tempfile
+import secrets
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -358,20 +359,17 @@ def load(path: str | os.PathLike) -> Surrogate:
 
 def _save(path: str, data: bytes) -> None:
     """Writes a file whole or not at all."""
-    folder = os.path.dirname(path) or "."
+    beside = os.path.join(os.path.dirname(path), f".pcc-{secrets.token_hex(8)}")
     try:
-        descriptor, written = tempfile.mkstemp(dir=folder, prefix=".pcc-")
         try:
-            with os.fdopen(descriptor, "wb") as file:
+            with open(beside, "xb") as file:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(written, 0o666 & ~mask)
-            os.replace(written, path)
+            os.replace(beside, path)
         except BaseException:
-            os.unlink(written)
+            with contextlib.suppress(OSError):
+                os.unlink(beside)
             raise
     except OSError as error:
         raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error

@@ -105,9 +105,14 @@ impl Study {
 
     /// The value of input number `input` that lies `step` in its standardized variable from `value`, if its law has it.
     fn neighbour(&self, input: usize, value: f64, step: f64) -> Option<f64> {
+        /// An end of a law may lie infinitely far away in the standardized variable: then from where few values are.
+        const NEAR_THE_END: f64 = 1.0 - 1e-6;
         let marginal = &self.study.inputs.inputs().get(input)?.marginal;
-        let found = marginal.physical(marginal.standardized(value) + step);
-        Some(found).filter(|found| found.is_finite() && marginal.contains(*found))
+        let xi = marginal.standardized(value);
+        let xi = if xi.is_finite() { xi } else { marginal.germ().at(NEAR_THE_END.copysign(xi)) };
+        let found = marginal.physical(xi + step);
+        // Values do not leave the support: at its end there is none beyond.
+        Some(found).filter(|found| *found != value && found.is_finite() && marginal.contains(*found))
     }
 
     /// A point as sentences have it.
