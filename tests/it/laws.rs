@@ -319,3 +319,22 @@ fn modes_are_numbered_at_medians() {
     };
     assert!((growth(1) + 0.1).abs() < 1e-9 && (growth(2) + 0.25).abs() < 1e-9, "{modes:?}");
 }
+
+/// Far out in the tail the oscillator is overdamped, at points that no run has: x − 1.1 > 10.
+#[test]
+fn tails_that_no_run_has_seen_may_diverge() {
+    for (law, expected) in [
+        ("\"exponential\", mean = 2.0", (-11.1_f64 / 2.0).exp()),
+        ("\"weibull\", shape = 0.8, scale = 1.5", (-(11.1_f64 / 1.5).powf(0.8)).exp()),
+        // erfc(√(11.1/4)), by Python.
+        ("\"gamma\", shape = 0.5, scale = 4.0", 0.018480687),
+    ] {
+        let folder = built_from(&oscillator(&[("x", law)], 1.1, ""));
+        let events = ["eval", "built.pcc", "-n", "400000", "--events", "divergence,frequency_1<0"];
+        let report = json(folder.path(), &events);
+        let found = [0, 1].map(|event| number(&report, &format!("/events/{event}/proportion")));
+        let error = (expected / 4e5).sqrt();
+        assert!((found[0] - expected).abs() <= 4.5 * error, "{law}: {found:?} for {expected}");
+        assert_eq!(found[1], 0.0, "{law}");
+    }
+}

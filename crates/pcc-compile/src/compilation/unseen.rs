@@ -6,8 +6,10 @@
 //! points. If it comes near zero anywhere, nearer than the design alone would call close, or than d is known, they form
 //! a group; unless their eigenvectors follow them through, or the pair is predicted badly.
 //!
-//! A mode and its own conjugate are such neighbours, too. Where it slows down, both are fitted by way of trial, and are
-//! closed under conjugation if they meet on the real axis at some of these points: divergence that no run has seen.
+//! A mode and its own conjugate are such neighbours, too. Where it slows down, both are fitted by way of trial, and
+//! are closed under conjugation if they meet on the real axis at some of these points: divergence that no run has
+//! seen. In the tails of inputs without bounds, runs may not even show that it slows down: there the prediction of Im
+//! λ is looked at, too.
 
 use super::components::Care;
 use super::group_fits::{Followed, GroupFit, GroupFits};
@@ -62,7 +64,8 @@ pub(super) fn with_unseen_groups(
         }
     }
     for group in grouping.clone() {
-        if !approaches_the_axis(followed, &group) {
+        let is_open = !group.is_closed() && followed.groups.closed(&group).is_possible();
+        if !is_open || !(is_slowing(followed, &group) || crosses_the_axis(study, fits.get(&group), observer)?) {
             continue;
         }
         let closed = followed.groups.closed(&group);
@@ -85,12 +88,20 @@ fn is_worse(trial: &GroupFit, apart: f64) -> bool {
 }
 
 /// Whether a mode of a complex group is slower at some runs than at others, so that it may meet its conjugate.
-fn approaches_the_axis(followed: &Followed<'_>, group: &Group) -> bool {
-    let is_slowing = |&label: &usize| {
+fn is_slowing(followed: &Followed<'_>, group: &Group) -> bool {
+    group.labels().iter().any(|&label| {
         let frequencies = || (0..followed.runs.len()).map(|run| followed.eigenvalue(run, label).im.abs());
         frequencies().fold(f64::INFINITY, f64::min) < SLOWING * frequencies().fold(0.0, f64::max)
-    };
-    !group.is_closed() && followed.groups.closed(group).is_possible() && group.labels().iter().any(is_slowing)
+    })
+}
+
+/// Whether an eigenvalue of a complex group is predicted below the real axis in the tail of an input.
+fn crosses_the_axis(study: &Study, fit: Option<&GroupFit>, observer: &dyn Observer) -> Result<bool, Interrupted> {
+    let mut supports = study.inputs.inputs().iter().flat_map(|input| input.marginal.support());
+    let fit = fit.filter(|fit| fit.fits.len() == fit.values.len() && supports.any(f64::is_infinite));
+    let Some(fit) = fit else { return Ok(false) };
+    let block = at_judged_points(&super::record::of_fits(study, &fit.output, &fit.fits), POINTS, observer)?;
+    Ok(block.eigenvalues.iter().flatten().any(|lambda| lambda.im <= 0.0))
 }
 
 /// Whether eigenvalues of a group closed under conjugation, which oscillate at every run, are predicted to be real
