@@ -50,6 +50,29 @@ fn levels_and_other_inputs_are_judged_together() {
     assert!((first - 0.125 / 0.165).abs() < 0.01, "{first}");
 }
 
+/// A rare variant at which the design has no point: x exp(−x) is above 0.3 at 0.6 and 0.9, and below at 4.
+#[test]
+fn values_at_the_ends_are_run_however_rare() {
+    let levels = "\"discrete\", values = [0.2, 0.4, 0.6, 0.9, 4.0], weights = [10, 10, 10, 10, 1]";
+    let upper = "\"discrete\", values = [0.2, 0.4, 0.6, 4.0], weights = [1, 1, 1, 0.16]";
+    let lower = "\"discrete\", values = [-0.5, 0.2, 0.4, 0.6, 0.9], weights = [1, 10, 10, 10, 10]";
+    for (law, seed, expected) in
+        [(levels, 1, 21.0 / 41.0), (levels, 5, 21.0 / 41.0), (upper, 1, 2.16 / 3.16), (lower, 1, 21.0 / 41.0)]
+    {
+        let study = oscillator(&[("x", law)], 0.3, "").replace("- x", "- x * exp(-x)");
+        let folder = built_from(&study.replace("format = 1", &format!("format = 1\nseed = {seed}")));
+        assert_share(stable_share(folder.path(), &[]), expected);
+        let built = json(folder.path(), &["inspect", "built.pcc"]);
+        assert!(number(&built, "/direct_computations") <= 40.0, "{law}");
+    }
+    let (folder, _) = measured(", column = \"x\", smoothing = \"none\"");
+    let rows: String = values().into_iter().chain([6.0]).map(|value| format!("0,{value:?}\n")).collect();
+    fs::write(folder.path().join("measured.csv"), format!("part,x\n{rows}")).unwrap();
+    output(folder.path(), &["build", "study.toml", "-o", "built.pcc", "--quiet"]);
+    let below = values().iter().filter(|value| **value < 1.1).count();
+    assert_share(stable_share(folder.path(), &[]), below as f64 / 41.0);
+}
+
 /// Values between 0.6 and 1.6, more at the lower end.
 fn values() -> Vec<f64> {
     (0..40).map(|k| 0.6 + (f64::from(k) / 39.0).powi(2)).collect()

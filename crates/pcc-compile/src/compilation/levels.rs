@@ -7,6 +7,7 @@
 use super::blindness::{LEAST_RARE, Sight};
 use super::components::{ComponentFit, ComponentResult};
 use super::decision::{Before, Judged, Previous, Purpose, judge};
+use super::end_levels::end_levels;
 use super::evaluations::{Evaluations, Level, groups};
 use super::grouped::GroupedEigenvalues;
 use super::judgement::Judgement;
@@ -108,6 +109,8 @@ struct Levels<'a> {
     idle_batches: usize,
     /// Batches since the last level of the design.
     batches: usize,
+    /// Runs at the ends of discrete inputs.
+    end_levels: usize,
     /// What the runs of the last level have seen.
     sight: Option<Sight>,
     grouping: Vec<Output>,
@@ -134,6 +137,7 @@ impl<'a> Levels<'a> {
             least_error: f64::INFINITY,
             idle_batches: 0,
             batches: 0,
+            end_levels: 0,
             sight: None,
             grouping: Vec::new(),
             previous: None,
@@ -148,7 +152,11 @@ impl<'a> Levels<'a> {
         // Step 1: the design, and the model at its points.
         let start = Instant::now();
         let is_batch = match &self.growth {
-            Growth::Design(size) => self.evaluations.grow_to(*size, observer).map(|()| false)?,
+            Growth::Design(size) => {
+                self.evaluations.grow_to(*size, observer)?;
+                self.run_end_levels(observer)?;
+                false
+            }
             Growth::Batch(points) => self.evaluations.add(points, observer).map(|()| true)?,
         };
         self.batches = if is_batch { self.batches + 1 } else { 0 };
@@ -222,6 +230,18 @@ impl<'a> Levels<'a> {
         }
         self.growth = growth;
         Ok(None)
+    }
+
+    /// Runs what the first level of the design has left out of discrete inputs.
+    fn run_end_levels(&mut self, observer: &dyn Observer) -> Result<(), BuildError> {
+        if !self.sizes.is_empty() {
+            return Ok(());
+        }
+        let mut points = end_levels(&self.study.inputs, &self.evaluations.points());
+        points.truncate(self.study.design.maximum.saturating_sub(self.evaluations.sizes().iter().sum()));
+        self.evaluations.add(&points, observer)?;
+        self.end_levels = points.len();
+        Ok(())
     }
 
     /// Whether a blind level should look near the boundary: while nothing comes near it, while that finds the rarer
@@ -312,7 +332,7 @@ impl<'a> Levels<'a> {
     fn ended(&self, mut surrogate: Surrogate, early_end: Option<EarlyEnd>) -> Built {
         let is_settled = self.clear_batches >= CLEAR_BATCHES && early_end.is_none();
         let sight = self.sight.map(|sight| Sight { clearance: sight.clearance.filter(|_| is_settled), ..sight });
-        record::ended(&mut surrogate, &self.evaluations, sight, early_end);
+        record::ended(&mut surrogate, (&self.evaluations, self.end_levels), sight, early_end);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
         Built { surrogate, rigid_body_modes: rigid_body_modes(self.evaluations.runs()) }
     }

@@ -4,6 +4,7 @@ mod blindness;
 mod components;
 mod decision;
 mod elements;
+mod end_levels;
 mod error;
 mod error_history;
 mod evaluations;

@@ -147,7 +147,7 @@ fn has_tolerance(surrogate: &Surrogate) -> bool {
 /// Takes down all runs that were spent, and why the build ended early, if it did.
 pub(super) fn ended(
     surrogate: &mut Surrogate,
-    evaluations: &Evaluations<'_>,
+    (evaluations, at_end_levels): (&Evaluations<'_>, usize),
     sight: Option<Sight>,
     early_end: Option<EarlyEnd>,
 ) {
@@ -155,9 +155,11 @@ pub(super) fn ended(
     surrogate.training.counts.failed = evaluations.failed() as u64;
     surrogate.coverage = evaluations.coverage();
     let settings = &mut surrogate.training.settings;
-    let [_, chosen] = evaluations.sizes();
-    if chosen > 0 {
-        settings.push(setting("runs_near_boundary", SettingValue::Integer(chosen as u64)));
+    let near_boundary = evaluations.sizes()[1] - at_end_levels;
+    for (name, runs) in [("runs_near_boundary", near_boundary), ("runs_at_end_levels", at_end_levels)] {
+        if runs > 0 {
+            settings.push(setting(name, SettingValue::Integer(runs as u64)));
+        }
     }
     if let Some(sight) = sight.filter(Sight::is_blind) {
         settings.push(setting("unstable_runs", SettingValue::Integer(sight.unstable as u64)));
