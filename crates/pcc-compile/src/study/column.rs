@@ -51,6 +51,16 @@ pub enum TableError {
         /// What they are called.
         columns: Vec<String>,
     },
+    /// It has the column more than once.
+    #[error("{file} has {column:?} as the name of {count} columns; rename all but one of them")]
+    SeveralTimes {
+        /// The file.
+        file: String,
+        /// The column.
+        column: String,
+        /// How often.
+        count: usize,
+    },
     /// A cell is no number.
     #[error("{file}, line {line}: {found:?} is no finite number; correct it, or remove the line")]
     NotANumber {
@@ -103,20 +113,16 @@ pub(super) fn values(file: &str, column: Option<&str>, folder: &Path) -> Result<
     let mut reader = csv::ReaderBuilder::new();
     let reader = reader.delimiter(delimiter(&text)).has_headers(false).flexible(true).trim(csv::Trim::All);
     let mut rows = reader.from_reader(text.as_bytes()).into_records();
-    let head: Vec<String> = match rows.next() {
-        Some(Ok(row)) => row.iter().map(str::to_owned).collect(),
-        Some(Err(error)) => return Err(unreadable(error.to_string())),
-        None => Vec::new(),
-    };
+    let first = rows.next().transpose().map_err(|error| unreadable(error.to_string()))?.unwrap_or_default();
+    let head: Vec<String> = first.iter().map(str::to_owned).collect();
     let is_numbers = || head.iter().all(|cell| number(cell).is_some());
     if let Some(found) = head.iter().find(|cell| is_decimal_comma(cell)) {
-        return Err(TableError::DecimalComma { file: name(), line: 1, found: found.clone() });
+        return Err(TableError::DecimalComma { file: name(), line: line(&text, &first), found: found.clone() });
     }
     let position = match column {
-        Some(column) => head.iter().position(|known| known == column).ok_or_else(|| TableError::NoColumn {
-            file: name(),
-            column: column.to_owned(),
-            columns: head.clone(),
+        Some(column) => position(&head, column).map_err(|count| match count {
+            0 => TableError::NoColumn { file: name(), column: column.to_owned(), columns: head.clone() },
+            count => TableError::SeveralTimes { file: name(), column: column.to_owned(), count },
         })?,
         None if head.len() > 1 && is_numbers() => {
             return Err(TableError::Unnamed { file: name(), columns: head.len() });
@@ -127,12 +133,30 @@ pub(super) fn values(file: &str, column: Option<&str>, folder: &Path) -> Result<
     // A column without a name begins with its first value.
     let mut values: Vec<f64> =
         if column.is_none() { head.iter().filter_map(|cell| number(cell)).collect() } else { Vec::new() };
-    for (at, row) in rows.enumerate() {
+    for row in rows {
         let row = row.map_err(|error| unreadable(error.to_string()))?;
-        let line = row.position().map_or(at as u64 + 2, csv::Position::line);
-        values.push(cell(&row, position, head.len()).map_err(|wrong| wrong.at(name(), line))?);
+        values.push(cell(&row, position, head.len()).map_err(|wrong| wrong.at(name(), line(&text, &row)))?);
     }
     Ok(values)
+}
+
+/// Where the one column of this name is; how many there are, if that is not one.
+fn position(head: &[String], column: &str) -> Result<usize, usize> {
+    let mut named = head.iter().enumerate().filter(|(_, known)| *known == column).map(|(at, _)| at);
+    match (named.next(), named.count()) {
+        (Some(at), 0) => Ok(at),
+        (first, others) => Err(usize::from(first.is_some()) + others),
+    }
+}
+
+/// The line on which a row begins: lines end at LF, CR LF or CR, of which the reader counts LF alone, and it may stand
+/// before blank lines or in the middle of CR LF.
+fn line(text: &str, row: &csv::StringRecord) -> u64 {
+    let start = row.position().map_or(0, |position| position.byte() as usize);
+    let rest = text.get(start..).unwrap_or_default().trim_start_matches(['\r', '\n']);
+    let before = &text[..text.len() - rest.len()];
+    let [feeds, returns, both] = ["\n", "\r", "\r\n"].map(|end| before.matches(end).count());
+    (1 + feeds + returns - both) as u64
 }
 
 /// What is wrong with a row.
@@ -179,7 +203,7 @@ fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
 
 /// What separates the columns of the first line, but for what stands in quotes.
 fn delimiter(text: &str) -> u8 {
-    let first = text.lines().next().unwrap_or_default();
+    let first = text.split(['\r', '\n']).find(|line| !line.is_empty()).unwrap_or_default();
     let plain: String = first.split('"').step_by(2).collect();
     DELIMITERS.into_iter().find(|byte| plain.as_bytes().contains(byte)).unwrap_or(b',')
 }
@@ -229,6 +253,38 @@ mod tests {
         assert!(message("a,k\n1,2\n", Some("b")).contains("no column \"b\"; it has a, k"));
         assert!(message("a,k\n1,2\n3\n", Some("a")).contains("line 3: cells and columns differ in number, 1 and 2"));
         assert!(message("k\n1\n2,x\n", None).contains("line 3: cells and columns differ in number, 2 and 1"));
+    }
+
+    #[test]
+    fn lines_are_counted_whatever_ends_them() {
+        for (lines, column, line) in [
+            (&["k", "1", "x"][..], None, 3),
+            (&["k", "", "", "1", "", "x"], None, 6),
+            (&["", "", "a;k", "1;2", "3;x"], Some("k"), 5),
+            (&["a,k", "\"1", "2\",3", "1,x", "1,2"], Some("k"), 4),
+        ] {
+            for end in ["\n", "\r\n", "\r"] {
+                for last in ["", end] {
+                    let message = message(lines.join(end) + last, column);
+                    assert!(
+                        message.starts_with(&format!("m.csv, line {line}: \"x\"")),
+                        "{lines:?}, {end:?}: {message}"
+                    );
+                }
+            }
+        }
+        assert!(message("\r\n\r\n1,5;2\r\n", None).starts_with("m.csv, line 3: 1,5 has a decimal comma"));
+    }
+
+    #[test]
+    fn a_column_is_named_once() {
+        assert_eq!(
+            message("k,k\n1,2\n", Some("k")),
+            "m.csv has \"k\" as the name of 2 columns; rename all but one of them"
+        );
+        assert!(message("k;a; k ;k\n1;2;3;4\n", Some("k")).contains("the name of 3 columns"));
+        assert!(message("\"k\"\tk\n1\t2\n", Some("k")).contains("the name of 2 columns"));
+        assert_eq!(read("k,a,k\n1,2,3\n", Some("a")), Ok(vec![2.0]), "other columns may be");
     }
 
     #[test]
