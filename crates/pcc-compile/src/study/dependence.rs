@@ -5,7 +5,7 @@ use super::raw;
 use super::validate::{Lines, alternatives};
 use crate::numerics::nearest_correlation::{nearest_correlation, smallest_eigenvalue};
 use nalgebra::DMatrix;
-use pcc_evaluate::probability::dependence::{CopulaError, GaussianCopula};
+use pcc_evaluate::probability::dependence::{CopulaError, GaussianCopula, LEAST_LEFT};
 use pcc_evaluate::probability::inputs::{InputSpace, PearsonError, pearson_of_scores, scores_of_pearson};
 use std::f64::consts::PI;
 use thiserror::Error;
@@ -148,7 +148,8 @@ pub enum DependenceError {
     },
     /// Correlations that contradict each other.
     #[error(
-        "these correlations cannot hold together: the smallest eigenvalue of their matrix{}, but must be positive{}",
+        "these correlations cannot hold together: the smallest eigenvalue of their matrix{}, but must be at least \
+         {LEAST_LEFT:e}{}",
         found(eigenvalue),
         proposal(nearest)
     )]

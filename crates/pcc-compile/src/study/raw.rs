@@ -1,6 +1,6 @@
 //! The study file as written: every value with its place, nothing checked but names and types.
 
-use serde::de::{MapAccess, Visitor};
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::fmt;
 use std::marker::PhantomData;
@@ -148,9 +148,35 @@ pub(super) struct Dependence {
 }
 
 /// Two inputs and their correlation.
-#[derive(Debug, Deserialize)]
-#[serde(expecting = "two inputs and their correlation, like [\"k\", \"c\", 0.6]")]
+#[derive(Debug)]
 pub(super) struct Pair(pub String, pub String, pub f64);
+
+/// Written out, because what is derived reads over entries after the third.
+impl<'de> Deserialize<'de> for Pair {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entries;
+        impl<'de> Visitor<'de> for Entries {
+            type Value = Pair;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("two inputs and their correlation, like [\"k\", \"c\", 0.6]")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<Pair, A::Error> {
+                let short = |found| A::Error::invalid_length(found, &self);
+                let one = entries.next_element()?.ok_or_else(|| short(0))?;
+                let other = entries.next_element()?.ok_or_else(|| short(1))?;
+                let value = entries.next_element()?.ok_or_else(|| short(2))?;
+                let mut found = 3;
+                while entries.next_element::<IgnoredAny>()?.is_some() {
+                    found += 1;
+                }
+                if found > 3 { Err(A::Error::invalid_length(found, &self)) } else { Ok(Pair(one, other, value)) }
+            }
+        }
+        deserializer.deserialize_seq(Entries)
+    }
+}
 
 /// A quantity relative to another: a number, or a text in percent.
 #[derive(Debug, Deserialize)]

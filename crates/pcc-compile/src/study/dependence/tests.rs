@@ -87,11 +87,18 @@ fn what_is_no_dependence_is_refused_with_key_and_line() {
         ("pearson = [[\"b\", \"d\", -0.6]]", "it can only be between -0.5000 and 1.0000"),
         ("pearson = [[\"a\", \"b\", 0.9]]", "it can only be between -0.8326 and 0.8326"),
         ("spearman = [[\"a\", \"b\"]]", "two inputs and their correlation, like [\"k\", \"c\", 0.6]"),
+        ("spearman = [[\"a\", \"b\", 0.5, 1]]", "two inputs and their correlation, like [\"k\", \"c\", 0.6]"),
+        ("pearson = [[\"a\", \"b\", 0.5],\n[\"b\", \"c\", 0.5, \"d\", 0.5]]", "line 16, column"),
+        ("spearman = [[\"a\", \"b\", 0.5, []]]", "invalid length 4"),
+        ("spearman = [[]]", "invalid length 0"),
+        ("spearman = [\"a\", \"b\", 0.5]", "expected two inputs and their correlation"),
         ("spearman = [[\"a\", 0.5]]", "expected a text in quotes"),
         ("spearman = [[\"a\", \"b\", \"0.5\"]]", "expected a number"),
         ("spearman = \"a\"", "expected a list"),
         ("kendall = [[\"a\", \"b\", 0.5]]", "unknown key `kendall`"),
         ("spearman = [[\"a\", \"b\", 0.99999999999999]]", "cannot hold together"),
+        ("spearman = [[\"a\", \"b\", 0.9999999999999]]", "matrix is 9.1e-14, but must be at least 1e-10. The nearest"),
+        ("pearson = [[\"b\", \"d\", 0.999999999999]]", "e-13, but must be at least 1e-10"),
     ] {
         let message = refusal(&copula(lines));
         assert!(message.contains(expected), "{lines}: {message}");

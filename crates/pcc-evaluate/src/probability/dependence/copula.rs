@@ -9,8 +9,9 @@ use thiserror::Error;
 /// Inputs that may depend on others: matrices of some megabytes.
 const MOST_MEMBERS: usize = 1000;
 
-/// What the others leave of the variance of each score, at least: less is lost in rounding.
-const LEAST_LEFT: f64 = 1e-10;
+/// What the others leave of the variance of each score, at least: less is lost in rounding. The smallest eigenvalue of
+/// their matrix is not more than what is left.
+pub const LEAST_LEFT: f64 = 1e-10;
 
 /// The correlation of the normal scores of two inputs, by their positions from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,5 +3,5 @@
 mod copula;
 mod factor;
 
-pub use copula::{CopulaError, Correlation, GaussianCopula};
+pub use copula::{CopulaError, Correlation, GaussianCopula, LEAST_LEFT};
 pub use factor::Factor;
