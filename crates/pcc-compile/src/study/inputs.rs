@@ -132,7 +132,7 @@ fn levels(input: &raw::Input) -> Result<Vec<(&'static str, f64)>, MarginalError>
 }
 
 /// Keys that measured values alone have, and that are given.
-fn of_data(input: &raw::Input) -> impl Iterator<Item = &'static str> {
+pub(super) fn of_data(input: &raw::Input) -> impl Iterator<Item = &'static str> {
     let keys =
         [("file", input.file.is_some()), ("column", input.column.is_some()), ("smoothing", input.smoothing.is_some())];
     keys.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name)

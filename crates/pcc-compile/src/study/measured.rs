@@ -2,6 +2,7 @@
 
 use super::column::values;
 use super::error::StudyError;
+use super::inputs::of_data;
 use super::raw;
 use super::validate::Lines;
 use pcc_evaluate::probability::inputs::{Marginal, MarginalError, Parameters, Smoothing, Source};
@@ -18,8 +19,12 @@ impl Lines<'_> {
     ) -> Result<Result<Marginal, MarginalError>, StudyError> {
         let file = input.file.as_ref();
         let is_bound = |(name, _): &(&str, f64)| ["lower", "upper"].contains(name);
-        let Some(file) = file.filter(|_| given.iter().all(is_bound) && input.values.is_none()) else {
-            return Ok(Marginal::named("data", &Parameters::of([])));
+        let levels = [("value", input.values.is_some()), ("weight", input.weights.is_some())];
+        let levels = levels.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| (name, 0.0));
+        let given: Vec<(&str, f64)> = given.iter().copied().chain(levels).collect();
+        let Some(file) = file.filter(|_| given.iter().all(is_bound)) else {
+            let known = of_data(input).map(|name| (name, 0.0));
+            return Ok(Marginal::named("data", &Parameters::of(given.into_iter().chain(known))));
         };
         if input.polynomials.is_some() {
             return Ok(Err(MarginalError::NoChoice { law: "data" }));

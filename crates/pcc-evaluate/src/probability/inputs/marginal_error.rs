@@ -57,12 +57,14 @@ pub enum MarginalError {
         known: String,
     },
     /// A law has other parameters.
-    #[error("a {law} law has {expected}")]
+    #[error("{} has {expected}; {complaint}", a_law(law))]
     Form {
         /// Its name.
         law: &'static str,
         /// What its parameters can be.
         expected: &'static str,
+        /// Which of those that are given do not belong to it, or which are missing.
+        complaint: String,
     },
     /// A share of nothing.
     #[error("{name} = {} is a share of {of}, which is 0; give {instead} instead", plain(value))]
@@ -110,7 +112,7 @@ pub enum MarginalError {
         value: f64,
     },
     /// A law has one kind of polynomials.
-    #[error("a {law} law leaves no choice of polynomials; remove the key")]
+    #[error("{} leaves no choice of polynomials; remove the key", a_law(law))]
     NoChoice {
         /// Its name.
         law: &'static str,
@@ -121,11 +123,35 @@ pub enum MarginalError {
         /// Its name.
         law: &'static str,
     },
+    /// A law's values do not differ in enough digits.
+    #[error(
+        "the standard deviation of {} is {share:.1e} of {of}, less than double precision resolves ({least:.1e}); {}",
+        if *law == "data" { "these values".to_owned() } else { format!("this {law} law") },
+        nearer(law)
+    )]
+    Narrow {
+        /// Its name.
+        law: &'static str,
+        /// Standard deviation, as a share of what is told next.
+        share: f64,
+        /// The mean, or its distance from a bound.
+        of: &'static str,
+        /// The least share that is resolved.
+        least: f64,
+    },
     /// The bounds of a truncated law leave next to nothing.
-    #[error("lower and upper leave {share:e} of the probability; move them, or the law")]
+    #[error(
+        "{given} leave{} {} of the probability, but at least {least:e} must be left; move the bound, or the law",
+        if given.contains(" and ") { "" } else { "s" },
+        if *share > 0.0 { format!("{share:.1e}") } else { "nothing".to_owned() }
+    )]
     NothingLeft {
+        /// The bounds that are given, like `lower = 5`.
+        given: String,
         /// What is left.
         share: f64,
+        /// What must be left at least.
+        least: f64,
     },
 }
 
@@ -136,12 +162,28 @@ impl MarginalError {
     }
 }
 
+/// The law with its article.
+pub(super) fn a_law(name: &str) -> String {
+    format!("{} {name} law", if name.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" })
+}
+
 /// What is not resolved, and what to do.
 fn unresolved(law: &str) -> [String; 2] {
     match law {
         "data" => ["the law of these values".to_owned(), "leave out values far from all others".to_owned()],
         "discrete" => ["a law of these values".to_owned(), "bring them and their weights closer together".to_owned()],
-        law => [format!("a {law} law with these parameters"), "move them away from extremes".to_owned()],
+        law => [format!("{} with these parameters", a_law(law)), "move them away from extremes".to_owned()],
+    }
+}
+
+/// What to do with a law that is too far from zero.
+fn nearer(law: &str) -> String {
+    let what = if law == "data" { "them" } else { "its values" };
+    let constant = format!("subtract a constant from {what}, which the model adds");
+    match law {
+        "data" => constant,
+        "normal" => format!("leave out the bounds, or {constant}"),
+        _ => format!("take a normal law, or {constant}"),
     }
 }
 

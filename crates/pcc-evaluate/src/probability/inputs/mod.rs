@@ -5,6 +5,7 @@ mod correlated;
 mod density;
 mod description;
 mod extremes;
+mod forms;
 mod gamma;
 mod germ;
 mod law;

@@ -4,7 +4,7 @@ use super::density::{Density, Place};
 use super::germ::Germ;
 use super::law::{Law, Transform, finite, positive};
 use super::marginal::Polynomials;
-use super::marginal_error::MarginalError;
+use super::marginal_error::{MarginalError, plain};
 use super::normal_quantile::distribution;
 use super::shaped::Draft;
 
@@ -52,7 +52,10 @@ impl Normal {
         let left = 1.0 - below - above;
         // Not a number, if nothing is.
         if left.is_nan() || left < LEAST_LEFT {
-            return Err(MarginalError::NothingLeft { share: left.max(0.0) });
+            let given = [("lower", lower), ("upper", upper)].into_iter();
+            let given = given.filter_map(|(name, bound)| Some(format!("{name} = {}", plain(&bound?))));
+            let given = given.collect::<Vec<_>>().join(" and ");
+            return Err(MarginalError::NothingLeft { given, share: left.max(0.0), least: LEAST_LEFT });
         }
         let mut parameters = self.parameters();
         parameters.extend(lower.map(|lower| ("lower", lower)));

@@ -2,6 +2,7 @@
 
 use super::beta::{beta, beta_with_moments};
 use super::extremes::{exponential, gumbel, gumbel_with_moments, weibull};
+use super::forms::complaint;
 use super::gamma::{gamma, gamma_with_moments};
 use super::law::{finite, positive};
 use super::levels::{self, discrete};
@@ -197,7 +198,9 @@ fn made(name: &str, given: &Parameters<'_>) -> Result<(&'static str, Made), Marg
         let known = Marginal::names().collect::<Vec<_>>().join(", ");
         return Err(MarginalError::Unknown { found: name.to_owned(), known });
     };
-    let made = make(given).unwrap_or(Err(MarginalError::Form { law, expected }));
+    let names = || given.numbers.iter().map(|(name, _)| *name);
+    let other = || Err(MarginalError::Form { law, expected, complaint: complaint(law, names()) });
+    let made = make(given).unwrap_or_else(other);
     Ok((law, made.map_err(|cause| given.explain(cause))?))
 }
 
@@ -331,7 +334,16 @@ mod tests {
         assert!(refusal("normal", &[("mean", 1.0)]).contains("mean and std"));
         assert!(refusal("normal", &[("mean", 1.0), ("std", 0.0)]).contains("std is 0"));
         assert!(refusal("normal", &[("mean", 0.0), ("cv", 0.1)]).contains("share of mean, which is 0"));
-        assert!(refusal("normal", &[("mean", 0.0), ("std", 1.0), ("lower", 9.0)]).contains("of the probability"));
+        for (bounds, expected) in [
+            (&[("lower", 9.0)][..], "lower = 9 leaves nothing of the probability, but at least 1e-9 must be left"),
+            (&[("lower", 6.0)], "lower = 6 leaves 9.9e-10 of the probability"),
+            (&[("upper", -7.0)], "upper = -7 leaves 1.3e-12 of the probability"),
+            (&[("lower", 9.0), ("upper", 10.5)], "lower = 9 and upper = 10.5 leave nothing of the probability"),
+        ] {
+            let given = [&[("mean", 0.0), ("std", 1.0)], bounds].concat();
+            assert!(refusal("normal", &given).starts_with(expected), "{}", refusal("normal", &given));
+        }
+        assert_eq!(refusal("exponential", &[]), "an exponential law has mean; mean is missing");
         assert!(refusal("normal", &[("mean", 0.0), ("std", 1.0), ("lower", 1.0), ("upper", 0.0)]).contains("below"));
         assert!(refusal("lognormal", &[("mean", -1.0), ("std", 0.5)]).contains("mean is -1"));
         assert!(refusal("log-uniform", &[("lower", 0.0), ("upper", 1.0)]).contains("lower is 0"));

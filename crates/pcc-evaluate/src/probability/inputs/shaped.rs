@@ -54,6 +54,10 @@ pub(super) struct Shaped {
     is_discrete: bool,
 }
 
+/// The least standard deviation, relative to the size of values: below, these differ in so few digits that pieces follow
+/// their rounding, thousands of them in vain.
+const LEAST_SCATTER: f64 = f64::EPSILON / 2e-10;
+
 /// The largest |F(q(z)) − Φ(z)| of what is stored, but for the rounding of q.
 const RESOLUTION: f64 = 1e-12;
 
@@ -62,7 +66,7 @@ impl Draft {
     ///
     /// # Errors
     ///
-    /// [`MarginalError::Shape`] if its quantiles cannot be resolved in double precision.
+    /// [`MarginalError::Narrow`] and [`MarginalError::Shape`] if its quantiles cannot be resolved in double precision.
     pub fn law(self, chosen: Option<Polynomials>) -> Result<Marginal, MarginalError> {
         self.shaped(chosen).map(Marginal::of)
     }
@@ -77,6 +81,9 @@ impl Draft {
     }
 
     fn shaped(self, chosen: Option<Polynomials>) -> Result<Shaped, MarginalError> {
+        if let Some(narrow) = self.narrow() {
+            return Err(narrow);
+        }
         let unresolved = || MarginalError::Shape { law: self.name };
         let integrated = Integrated::new(&*self.density).ok_or_else(unresolved)?;
         let [mean, scale] = integrated.moments();
@@ -106,6 +113,20 @@ impl Draft {
             chosen,
             ..Shaped::new(self.name, self.parameters, support, [origin, scale], quantile, basis, polynomials)
         })
+    }
+
+    /// Why its values differ in too few digits, if they do: seen from zero, or from the nearer end of its support.
+    fn narrow(&self) -> Option<MarginalError> {
+        let [mean, std] = self.density.typical();
+        let from_ends = self.density.support().map(|end| (mean - end).abs());
+        let nearest = from_ends[0].min(from_ends[1]);
+        // Measured values are what they are, and no distances from an end.
+        let (size, of) = match nearest.is_finite() && self.name != "data" {
+            true => (nearest, "its distance from the nearer bound"),
+            false => (mean.abs(), "the mean"),
+        };
+        let is_narrow = std < LEAST_SCATTER * size;
+        is_narrow.then(|| MarginalError::Narrow { law: self.name, share: std / size, of, least: LEAST_SCATTER })
     }
 
     /// The law as a file has it.

@@ -328,3 +328,40 @@ fn parameters_at_extremes_are_resolved_or_refused() {
         assert!(made(name, &given).is_err(), "{name} {given:?}");
     }
 }
+
+#[test]
+fn values_that_differ_in_few_digits_are_refused_at_once_and_for_that() {
+    use super::super::measured::Smoothing;
+    let made = |name, given: &[(&'static str, f64)]| Marginal::named(name, &Parameters::of(given.iter().copied()));
+    let data = |offset: f64| {
+        let values: Vec<f64> = (0..40).map(|k| offset + (f64::from(k) * 0.754_877_666).fract()).collect();
+        Marginal::measured(&values, [None, None], Smoothing::Kernel, None)
+    };
+    let start = std::time::Instant::now();
+    for (refused, expected) in [
+        (data(1e9), "of these values is 2.9e-10 of the mean, less than double precision resolves (1.1e-6); subtract"),
+        (data(-1e15), "subtract a constant from them, which the model adds"),
+        (made("gumbel", &[("location", 1_000_001.0), ("scale", 0.3)]), "of this gumbel law is 3.9e-7 of the mean"),
+        (
+            made("normal", &[("mean", 1e9), ("std", 1.0), ("lower", 0.0)]),
+            "of this normal law is 1.0e-9 of its distance from the nearer bound, less than double precision resolves \
+             (1.1e-6); leave out the bounds, or subtract",
+        ),
+        (made("gumbel", &[("mean", -1e9), ("std", 1.0)]), "take a normal law, or subtract a constant from its values"),
+    ] {
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains(expected), "{message}");
+    }
+    assert!(start.elapsed().as_secs_f64() < 0.5, "without a single piece");
+    for (name, given) in [
+        ("gumbel", &[("location", 1e5), ("scale", 0.3)][..]),
+        ("gumbel", &[("location", -1e6), ("scale", 1.0)]),
+        // Distances from an end keep their digits.
+        ("normal", &[("mean", 2e5), ("std", 0.3), ("lower", 0.0)]),
+        ("normal", &[("mean", 1e9), ("std", 1.0), ("lower", 1e9 + 1.0)]),
+        ("triangular", &[("lower", 1e9), ("mode", 1e9 + 1.0), ("upper", 1e9 + 2.0)]),
+    ] {
+        let law = made(name, given).unwrap_or_else(|error| panic!("{name} {given:?}: {error}"));
+        assert!(law.at_centred_probability(0.5) > law.at_centred_probability(-0.5));
+    }
+}
