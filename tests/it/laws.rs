@@ -221,8 +221,12 @@ fn laws_that_make_no_sense_are_refused() {
         ("\"normal\", mean = 1.0, cv = \"-5%\"", "above 0"),
         ("\"normal\", mean = 1.0", "mean and std, mean and cv, or nominal and cv"),
         ("\"normal\", mean = 1.0, std = 0.1, shape = 2.0", "a normal law has mean and std"),
+        ("\"normal\", mean = 1.0, std = 0.1, mode = 1.0", "it off; mode does not belong to it; remove that key"),
+        ("\"exponential\", mean = 1.0, std = 0.1", "an exponential law has mean; std does not belong to it"),
+        ("\"exponential\", mean = 1.0, polynomials = \"own\", upper = 9.0", "an exponential law cannot be cut off"),
+        ("\"weibull\", shape = 2.0, values = [1.0, 2.0]", "shape and scale; values does not belong to it"),
         ("\"normal\", mean = nan, std = 0.1", "mean is NaN"),
-        ("\"normal\", mean = 1.0, std = 0.1, lower = 3.0", "of the probability"),
+        ("\"normal\", mean = 1.0, std = 0.1, lower = 3.0", "lower = 3 leaves nothing of the probability, but"),
         ("\"normal\", mean = 1.0, std = 0.1, lower = 1.2, upper = 1.1", "(1.2) is not below"),
         ("\"lognormal\", mean = -1.0, std = 0.1", "mean is -1, but must be a positive number"),
         ("\"log-uniform\", lower = 0.0, upper = 1.0", "lower is 0, but must be a positive number"),
@@ -261,15 +265,23 @@ fn laws_beyond_what_a_parameter_can_be_are_to_be_cut_off() {
 }
 
 #[test]
-fn elements_divide_bounded_inputs_alone() {
+fn elements_divide_uniform_inputs_alone() {
     let study = |law: &str| {
         let inputs = [("u", "\"uniform\", lower = 0.5, upper = 1.5"), ("x", law)];
         oscillator(&inputs, 1.1, "[fit]\nmethod = \"me-gpc\"\nelements = 4\n")
     };
-    let folder = folder_with(&study("\"normal\", mean = 0.0, std = 0.1"));
-    let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
-    for expected in ["line 10: inputs.x", "elements divide bounded inputs only", "a normal law has a tail"] {
-        assert!(message.contains(expected), "{message}");
+    for (law, name) in [
+        ("\"normal\", mean = 0.0, std = 0.1", "normal"),
+        ("\"exponential\", mean = 0.1", "exponential"),
+        ("\"triangular\", lower = 0.0, mode = 0.1, upper = 0.2", "triangular"),
+        ("\"discrete\", values = [0.0, 0.1]", "discrete"),
+    ] {
+        let folder = folder_with(&study(law));
+        let message = in_one_line(&refusal(folder.path(), &["build", "study.toml"]));
+        let expected = format!(
+            "line 10: inputs.x: elements divide uniform and log-uniform inputs only, and this law is {name}; use one of"
+        );
+        assert!(message.contains(&expected), "{message}");
     }
     built_from(&study("\"log-uniform\", lower = 0.05, upper = 0.2"));
 }

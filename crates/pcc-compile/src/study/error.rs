@@ -133,12 +133,12 @@ pub enum StudyError {
         /// Where.
         place: Place,
     },
-    /// Elements along an input that is not bounded.
+    /// Elements along an input that is not uniform.
     #[error(
-        "{place}: elements divide bounded inputs only, and a {law} law has a tail; use a uniform or log-uniform law, or \
-         another fit.method"
+        "{place}: elements divide uniform and log-uniform inputs only, and this law is {law}; use one of these two laws, \
+         or another fit.method"
     )]
-    ElementsOfUnbounded {
+    ElementsOfOthers {
         /// Where.
         place: Place,
         /// The input's law.

@@ -68,7 +68,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
         && let Some(at) = inputs.inputs().iter().position(|input| !input.marginal.is_divisible())
     {
         let law = inputs.inputs()[at].marginal.name();
-        return Err(StudyError::ElementsOfUnbounded { place: places[at].clone(), law });
+        return Err(StudyError::ElementsOfOthers { place: places[at].clone(), law });
     }
     let derivatives = fit.use_derivatives(spectrum.target, &model);
     let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
