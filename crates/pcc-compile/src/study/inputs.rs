@@ -74,7 +74,9 @@ impl Lines<'_> {
         let law = match input.distribution.get_ref().as_str() {
             "data" => self.measured(&key, input, &given, folder)?,
             law => levels(input).and_then(|levels| {
-                given.extend(levels);
+                // Equal weights are nobody's key.
+                let is_key = |name: &str| law == "discrete" || name == "value" || input.weights.is_some();
+                given.extend(levels.into_iter().filter(|(name, _)| is_key(name)));
                 given.extend(of_data(input).map(|name| (name, 0.0)));
                 Marginal::named(law, &Parameters::of(given).with_polynomials(polynomials))
             }),
