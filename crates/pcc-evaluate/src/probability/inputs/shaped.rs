@@ -54,8 +54,8 @@ pub(super) struct Shaped {
     is_discrete: bool,
 }
 
-/// The least standard deviation, relative to the size of values: below, these differ in so few digits that pieces follow
-/// their rounding, thousands of them in vain.
+/// The least standard deviation, relative to the size of values: below, these differ in so few digits that pieces
+/// follow their rounding, thousands of them in vain.
 const LEAST_SCATTER: f64 = f64::EPSILON / 2e-10;
 
 /// The largest |F(q(z)) − Φ(z)| of what is stored, but for the rounding of q.
