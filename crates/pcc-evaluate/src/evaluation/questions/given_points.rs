@@ -188,7 +188,7 @@ impl GivenPoints<'_> {
     }
 
     /// Whether all values are numbers, and in the support unless that does not matter. Supports are intervals, so that
-    /// the least and the largest value say it.
+    /// the least and the largest value say it, but for single values.
     fn are_inside(&self, law: &Marginal, values: &[f64]) -> bool {
         let (mut lower, mut upper, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for &value in values {
@@ -197,7 +197,8 @@ impl GivenPoints<'_> {
             // 0 · x is no number where x is none, and where it is infinite.
             sum += 0.0 * value;
         }
-        sum == 0.0 && (self.extrapolates || (law.contains(lower) && law.contains(upper)))
+        let are_taken = || !law.is_discrete() || values.iter().all(|value| law.takes(*value));
+        sum == 0.0 && (self.extrapolates || (law.contains(lower) && law.contains(upper) && are_taken()))
     }
 
     /// Refuses what is no point of the domain.
@@ -220,9 +221,9 @@ impl GivenPoints<'_> {
 mod tests {
     use super::*;
     use crate::artifact::decode;
-    use crate::evaluation::evaluate_points;
+    use crate::evaluation::{evaluate_points, test_surrogates};
     use crate::foundation::Silent;
-    use crate::probability::inputs::random_points;
+    use crate::probability::inputs::{Input, InputSpace, Parameters, random_points};
     use crate::probability::random::Purpose;
 
     fn surrogate() -> Surrogate {
@@ -250,6 +251,19 @@ mod tests {
             let row: Vec<_> = block.eigenvalues.iter().map(|mode| mode[i]).collect();
             assert_eq!((&eigenvalues[i * width..][..width], verdicts[i]), (row.as_slice(), block.top(i).verdict()));
         }
+    }
+
+    #[test]
+    fn values_between_those_of_an_input_are_refused() {
+        let levels = [1.0, 2.0, 9.0].into_iter().flat_map(|value| [("value", value), ("weight", 1.0)]);
+        let law = Marginal::named("discrete", &Parameters::of(levels)).unwrap();
+        let inputs = InputSpace::new(vec![Input::new("n".to_owned(), law)]).unwrap();
+        let surrogate = test_surrogates::surrogate(inputs, vec![test_surrogates::expansion(&[(&[1], 1.0)])]);
+        let given = GivenPoints { surrogate: &surrogate, extrapolates: false };
+        let mut found = [0.0; 3];
+        given.max_re(&[9.0, 1.0, 2.0], &mut found, &Silent).unwrap();
+        let error = given.max_re(&[9.0, 1.5, 2.0], &mut found, &Silent).unwrap_err();
+        assert!(matches!(error, PointError::Outside { row: 1, .. }), "{error}");
     }
 
     #[test]
