@@ -113,6 +113,8 @@ pub(super) struct Judged<'a> {
     pub runs: &'a [Run],
     /// Which runs are those of the design: a share of others is none of cases.
     pub of_design: Vec<usize>,
+    /// How many runs were chosen near the boundary.
+    pub near_boundary: usize,
 }
 
 /// Judges a level; `before` is the judgement of the level before. If there is none and the level is the last, nothing
@@ -123,7 +125,7 @@ pub(super) fn judge(
     purpose: Purpose<'_>,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
-    let Judged { surrogate, fitted, values, runs, of_design } = level;
+    let Judged { surrogate, fitted, values, runs, of_design, near_boundary } = level;
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
     let Some(left_out) = left_out else {
         return Ok(Judgement::default());
@@ -151,9 +153,10 @@ pub(super) fn judge(
     // A change that no point shows is below one of all.
     let change = found[0].at.mean_change.max(((POINTS * runs.len()) as f64).recip());
     let is_chance_of = |count, runs: f64| is_chance(count, BOTH_SIDES * change * runs);
-    let (random, chosen) = (of_design.len() as f64, (runs.len() - of_design.len()) as f64);
-    let at_random = random + chosen / zone_share(surrogate, judge.rarest(&classes[..1]));
+    let chosen = near_boundary as f64;
+    let at_random = runs.len() as f64 - chosen + chosen / zone_share(surrogate, judge.rarest(&classes[..1]));
     let is_doubtful = !is_chance_of(undecided, at_random);
+    let random = of_design.len() as f64;
     let misjudged = misjudged(surrogate, values, &residuals.seen, runs, &of_design);
     let misjudged = if is_chance_of(misjudged, random) { 0.0 } else { misjudged as f64 / random };
     if sight.is_blind() && sight.rare() == 0 {

@@ -186,8 +186,10 @@ impl<'a> Levels<'a> {
         let is_last = next.is_none() || self.stopping.needs_no_judgement(&results);
         let before = self.previous.as_ref().map(|previous| Before { previous, is_regrouped });
         let tolerance = self.study.fit.proportion_tolerance;
-        let of_design = (0..runs.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
-        let judged = Judged { surrogate: &surrogate, fitted: &results, values: &level.values, runs, of_design };
+        let of_design: Vec<usize> = (0..runs.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
+        let near_boundary = (runs.len() - of_design.len()).saturating_sub(self.end_levels);
+        let values = &level.values;
+        let judged = Judged { surrogate: &surrogate, fitted: &results, values, runs, of_design, near_boundary };
         let is_final = is_batch && self.clear_batches + 1 >= CLEAR_BATCHES;
         let mut judgement =
             judge(judged, before, Purpose { tolerance, is_last, is_final, shares: &self.study.fit.shares }, observer)?;
