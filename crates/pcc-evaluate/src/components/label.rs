@@ -9,9 +9,11 @@ use std::fmt;
 /// ```
 /// use pcc_evaluate::components::is_result_column;
 /// assert!(["max_re", "stable", "verdict", "re_1", "im_12", "re_3_b", "real_2"].into_iter().all(is_result_column));
+/// assert!(["max_re_lower", "im_3_upper"].into_iter().all(is_result_column), "ends of intervals");
 /// assert!(!["mu", "re", "re_", "real_x", "re_1_c", "stable_share"].into_iter().any(is_result_column));
 /// ```
 pub fn is_result_column(name: &str) -> bool {
+    let name = name.strip_suffix("_lower").or(name.strip_suffix("_upper")).unwrap_or(name);
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let numbered = |start: &str, end: &str| {
         name.strip_prefix(start).and_then(|rest| rest.strip_suffix(end)).is_some_and(is_number)

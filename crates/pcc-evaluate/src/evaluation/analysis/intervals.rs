@@ -71,7 +71,7 @@ impl FromStr for IntervalLevel {
 
 impl fmt::Display for IntervalLevel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} %", f64::from((MILLION - self.beyond) / 100) / 100.0)
+        write!(f, "{} %", f64::from(MILLION - self.beyond) / 1e4)
     }
 }
 
@@ -170,6 +170,7 @@ mod tests {
         assert_eq!(least, [9, 19, 99, 1, 999_999]);
         let ranks = [8, 9, 18, 19, 28, 29, 199].map(|runs| level("0.9").rank(runs));
         assert_eq!(ranks, [0, 1, 1, 2, 2, 3, 20], "1 − 0.9 is below a tenth in double precision");
+        assert_eq!(["0.9", "0.90005"].map(|text| level(text).to_string()), ["90 %", "90.005 %"]);
     }
 
     #[test]
