@@ -30,22 +30,23 @@ class Function:
         self.names = list(study.names)
         self.constants = dict(study.constants)
         self.answers = study.answers
-        self._steps: list[float] | None = None
+        self._steps: dict[int, float] = {}
+        self._at_middle: np.ndarray | None = None
         self._lock = threading.Lock()
 
     def __call__(self, values: list, with_derivatives: bool) -> tuple[str, np.ndarray, np.ndarray | None]:
         form, numbers, given = self._answer(values)
-        if kind_of(form) != self.answers:
-            raise AnswerError(
-                f'the function has returned {kind_of(form)}, but the study says answers = "{self.answers}"'
-            )
         if form == "eigenvalues" or not with_derivatives:
             return form, numbers, None
         return form, numbers, self._derivatives(values, numbers, given)
 
     def _answer(self, values: list) -> tuple[str, np.ndarray, Mapping]:
-        answer = self.function(**dict(zip(self.names, values)), **self.constants)
-        return read(answer)
+        form, numbers, given = read(self.function(**dict(zip(self.names, values)), **self.constants))
+        if kind_of(form) != self.answers:
+            raise AnswerError(
+                f'the function has returned {kind_of(form)}, but the study says answers = "{self.answers}"'
+            )
+        return form, numbers, given
 
     def _derivatives(self, values: list, numbers: np.ndarray, given: Mapping) -> np.ndarray:
         unknown = [str(name) for name in given if name not in self.names]
@@ -56,20 +57,20 @@ class Function:
             if name in given:
                 found[j] = _given(given[name], name, numbers.shape)
             else:
-                found[j] = _differences.derivative(self._matrices, self.study, values, numbers, j, self._step(j, given))
+                found[j] = _differences.derivative(self._matrices, self.study, values, numbers, j, self._step(j))
         return found
 
     def _matrices(self, values: list) -> np.ndarray:
         return self._answer(values)[1]
 
-    def _step(self, j: int, given: Mapping) -> float:
-        """The step of an input, chosen at the first run that needs it: the same whatever the run."""
+    def _step(self, j: int) -> float:
+        """The step of an input, chosen when a run first needs it: the same whatever the run."""
         with self._lock:
-            if self._steps is None:
+            if j not in self._steps:
                 middle = self.study.medians
-                at_middle = self._matrices(middle)
-                choose = lambda j: _differences.best_step(self._matrices, self.study, middle, at_middle, j)  # noqa: E731
-                self._steps = [0.0 if name in given else choose(j) for j, name in enumerate(self.names)]
+                if self._at_middle is None:
+                    self._at_middle = self._matrices(middle)
+                self._steps[j] = _differences.best_step(self._matrices, self.study, middle, self._at_middle, j)
             return self._steps[j]
 
 

@@ -72,3 +72,26 @@ def test_no_more_matrices_are_made_than_two_an_input():
     before = len(calls)
     given.answer(k=95.0, c=0.0)
     assert len(calls) - before <= 2
+
+
+GIVEN = [
+    (["k"], []),
+    (["c"], ["k"]),
+    (["k", "c"], []),
+    ([], ["c"]),
+]
+
+
+@pytest.mark.parametrize("first, later", GIVEN, ids=range(len(GIVEN)))
+def test_runs_may_differ_in_the_derivatives_that_they_give(first, later):
+    by = {"k": np.array([[0.0, 0.0], [-1.0, 0.0]]), "c": np.array([[0.0, 0.0], [0.0, -1.0]])}
+    given = [first]
+    study = pcc.Study(
+        OSCILLATOR,
+        lambda k, c: (systems.oscillator(k, c), {name: by[name] for name in given[0]}),
+        answers="matrices",
+    )
+    for names in (first, later):
+        given[0] = names
+        found = study.answer(k=95.0, c=0.0)[2][:, 0]
+        assert np.abs(found - [by["k"], by["c"]]).max() < 1e-13
