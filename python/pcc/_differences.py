@@ -56,6 +56,13 @@ def derivative(matrices: Matrices, study: Any, point: list, at_point: np.ndarray
 
 
 def _differing(there: np.ndarray, here: np.ndarray) -> np.ndarray:
+    """What two answers differ by, each the matrices A, or M, C and K, of one system."""
+    if len(there) != len(here):
+        forms = {1: "A", 3: "M, C, K"}
+        raise AnswerError(
+            f"the function has returned {forms[len(here)]} at one point and {forms[len(there)]} beside it; it must return "
+            "the same everywhere"
+        )
     if there.shape != here.shape:
         raise AnswerError(
             f"the matrices are {there.shape[1]} × {there.shape[1]} at one point and {here.shape[1]} × {here.shape[1]} beside it"

@@ -95,3 +95,22 @@ def test_runs_may_differ_in_the_derivatives_that_they_give(first, later):
         given[0] = names
         found = study.answer(k=95.0, c=0.0)[2][:, 0]
         assert np.abs(found - [by["k"], by["c"]]).max() < 1e-13
+
+
+def second_order(k, c):
+    return np.eye(2), np.eye(2) * c, np.eye(2) * k
+
+
+FORMS = [
+    (systems.oscillator, second_order, "has returned A at one point and M, C, K beside it"),
+    (second_order, systems.oscillator, "has returned M, C, K at one point and A beside it"),
+    (systems.oscillator, systems.eigenvalues_of_oscillator, "has returned eigenvalues, but the study says"),
+    (second_order, systems.eigenvalues_of_oscillator, "has returned eigenvalues, but the study says"),
+]
+
+
+@pytest.mark.parametrize("here, beside, sentence", FORMS, ids=range(len(FORMS)))
+def test_answers_have_one_form(here, beside, sentence):
+    study = pcc.Study(OSCILLATOR, lambda k, c: (here if k == 100.0 else beside)(k, c), answers="matrices")
+    with pytest.raises(pcc.AnswerError, match=sentence):
+        study.answer(k=100.0, c=0.1)
