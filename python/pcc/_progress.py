@@ -35,9 +35,13 @@ class Progress:
             self._length = 0
 
     def _write(self, line: str) -> None:
-        sys.stderr.write("\r" + line.ljust(self._length) + ("\r" if not line else ""))
-        sys.stderr.flush()
-        self._length = len(line)
+        try:
+            sys.stderr.write("\r" + line.ljust(self._length) + ("\r" if not line else ""))
+            sys.stderr.flush()
+            self._length = len(line)
+        except (OSError, ValueError, AttributeError):
+            # It is closed, a pipe that nobody reads, or None: the work goes on unseen.
+            self._shows, self._length = False, 0
 
 
 def progress(wanted: bool | None) -> Progress:
@@ -49,4 +53,7 @@ def _somebody_looks() -> bool:
     if sys.stderr is None:
         return False
     is_notebook = "ipykernel" in sys.modules and "IPython" in sys.modules
-    return is_notebook or bool(getattr(sys.stderr, "isatty", lambda: False)())
+    try:
+        return is_notebook or bool(getattr(sys.stderr, "isatty", lambda: False)())
+    except (OSError, ValueError):
+        return False

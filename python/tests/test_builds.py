@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import logging
 import pickle
+import sys
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import systems
 from conftest import OSCILLATOR
 
 import pcc
+from pcc._toml import study_text
 
 
 def runs(surrogate: pcc.Surrogate) -> int:
@@ -163,3 +166,33 @@ def test_surrogates_are_certified_and_compared(built):
     other = pcc.Study(OSCILLATOR | {"c": pcc.uniform(0, 1)}, systems.oscillator)
     with pytest.raises(pcc.Error, match="another"):
         built.compare(other, 10)
+
+
+class Broken(io.StringIO):
+    """A pipe that nobody reads, seen at once or once it is flushed."""
+
+    def __init__(self, method: str) -> None:
+        super().__init__()
+        setattr(self, method, self._break)
+
+    def _break(self, *_):
+        raise BrokenPipeError(32, "Broken pipe")
+
+
+def closed() -> io.StringIO:
+    stream = io.StringIO()
+    stream.close()
+    return stream
+
+
+STREAMS = [closed, lambda: Broken("write"), lambda: Broken("flush"), lambda: None]
+
+
+@pytest.mark.parametrize("stream", STREAMS, ids=range(len(STREAMS)))
+@pytest.mark.parametrize("wanted", [True, None])
+def test_builds_go_on_where_progress_cannot_be_shown(monkeypatch, built, stream, wanted):
+    study = pcc.Study(OSCILLATOR, systems.oscillator)
+    monkeypatch.setattr(sys, "stderr", stream())
+    found = pcc.build(study, progress=wanted)
+    monkeypatch.undo()
+    assert found == built
