@@ -11,7 +11,7 @@ import numpy as np
 
 from ._errors import StudyError
 
-_BARE = re.compile(r"^[A-Za-z0-9_-]+$")
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def study_text(tables: Mapping[str, Any]) -> str:
@@ -27,12 +27,16 @@ def study_text(tables: Mapping[str, Any]) -> str:
 def _key(key: Any) -> str:
     if not isinstance(key, str):
         raise StudyError(f"the name {key!r} is no text; names of inputs and keys are")
-    return key if _BARE.match(key) else _text(key)
+    return key if _BARE.fullmatch(key) else _text(key)
 
 
 def _text(text: str) -> str:
-    # What JSON escapes, TOML reads.
-    return json.dumps(text)
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise StudyError(f"the text {text!r} has half of a surrogate pair, which is no character") from None
+    # What JSON escapes, TOML reads; DEL it must escape besides, and pairs of surrogates it refuses.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _value(value: Any, where: str) -> str:

@@ -196,3 +196,30 @@ def test_builds_go_on_where_progress_cannot_be_shown(monkeypatch, built, stream,
     found = pcc.build(study, progress=wanted)
     monkeypatch.undo()
     assert found == built
+
+
+TEXTS = ["𝜇", "🙂 on a plane of its own", "a\x7fb", 'µ "quoted" \\ \t\n\x00\x1f', "\u2028\x85\ufffe"]
+
+
+@pytest.mark.parametrize("text", TEXTS, ids=range(len(TEXTS)))
+def test_texts_keep_every_character(text):
+    tomllib = pytest.importorskip("tomllib")
+    tables = {"version": text, "inputs": {text: 1, "k": {text: text}}}
+    assert tomllib.loads(study_text(tables)) == tables
+
+
+def test_studies_have_characters_of_all_planes():
+    study = pcc.Study(OSCILLATOR | {"k": pcc.uniform(90, 110, unit="🙂")}, systems.oscillator, version="𝜇")
+    again = pcc.Study.from_toml(study.to_toml(), systems.oscillator)
+    assert "🙂" in study.to_toml() and again._native.problem_hash == study._native.problem_hash
+
+
+@pytest.mark.parametrize("name", ["k\n", "k.c", "", "ä"])
+def test_names_that_are_not_bare_are_quoted(name):
+    tomllib = pytest.importorskip("tomllib")
+    assert tomllib.loads(study_text({"inputs": {name: 1}})) == {"inputs": {name: 1}}
+
+
+def test_half_a_character_is_none():
+    with pytest.raises(pcc.StudyError, match="half of a surrogate pair"):
+        pcc.Study(OSCILLATOR, systems.oscillator, version="\ud83d")
