@@ -6,7 +6,7 @@ use crate::model::read;
 use crate::pool::new_pool;
 use crate::study::Study;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
-use pcc::{Contents, Error, Format, Journal, ModelAnswer, ask_runs, build_from_answers, encode, tell_runs};
+use pcc::{Contents, Error, Format, Journal, ModelAnswer, TellError, ask_runs, build_from_answers, encode, tell_runs};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
@@ -18,6 +18,9 @@ pub struct Builder {
     study: Py<Study>,
     journal: Option<Journal>,
     contents: Mutex<Contents>,
+    /// Held while answers are taken, by threads without the interpreter's lock: answers that came in between would be
+    /// lost. What is known can be read meanwhile.
+    taking: Mutex<()>,
 }
 
 #[pymethods]
@@ -26,7 +29,7 @@ impl Builder {
     fn new(py: Python<'_>, study: Py<Study>, journal: Option<PathBuf>) -> PyResult<Self> {
         let opened = journal.map(|path| Journal::open(&path)).transpose().map_err(|error| raised(py, error))?;
         let (journal, contents) = opened.map_or((None, Contents::default()), |(journal, known)| (Some(journal), known));
-        Ok(Self { study, journal, contents: Mutex::new(contents) })
+        Ok(Self { study, journal, contents: Mutex::new(contents), taking: Mutex::default() })
     }
 
     /// The points that wait for an answer, a row each; none if the build is complete.
@@ -60,14 +63,15 @@ impl Builder {
         let answers = answers.iter().map(read).collect::<PyResult<Vec<_>>>()?;
         let answers: Vec<_> = rows.zip(answers).collect();
         let served = self.study.get().served(py, 1);
-        let mut contents = self.contents();
-        let journal = self.journal.as_ref();
-        let (contents, told) = in_background(py, new_pool()?, None, move |service| {
-            let told = tell_runs(&served(service).0, journal, &mut contents, &answers, service);
-            (contents, told)
+        let told = in_background(py, new_pool()?, None, move |service| {
+            let _taking = self.taking.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut contents = self.contents();
+            let told = tell_runs(&served(service).0, self.journal.as_ref(), &mut contents, &answers, service)?;
+            // Here, since Ctrl-C from now on must not part memory from what the journal has.
+            *self.contents.lock().unwrap_or_else(PoisonError::into_inner) = contents;
+            Ok::<_, TellError>(told)
         })?;
         let told = told.map_err(|error| raised(py, error))?;
-        *self.contents.lock().unwrap_or_else(PoisonError::into_inner) = contents;
         Ok((told.answered, told.failed, told.missing))
     }
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ProcessPoolExecutor
+import threading
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 
 import numpy as np
@@ -83,3 +84,20 @@ def test_failures_are_told_and_skipped():
     while len(X := builder.ask()):
         builder.tell(X, [ValueError("no") if k > 109 else run((study, (k, c))) for k, c in X])
     assert abs(builder.result.sample(10_000).stable - 0.75) < 0.05
+
+
+def test_threads_may_tell_at_once(tmp_path, built, oscillator):
+    builder = pcc.Builder(oscillator, journal=tmp_path / "j")
+    while len(X := builder.ask()):
+        known, barrier = answers(oscillator, X), threading.Barrier(len(X))
+
+        def tell(row, X=X, known=known, barrier=barrier):
+            barrier.wait(30)
+            builder.tell(X[row : row + 1], known[row : row + 1])
+
+        with ThreadPoolExecutor(len(X)) as executor:
+            list(executor.map(tell, range(len(X))))
+        assert not set(map(tuple, X)) & set(map(tuple, builder.ask()))
+    assert builder.result == built
+    del builder, tell
+    assert not len(pcc.Builder(oscillator, journal=tmp_path / "j").ask())
