@@ -1,7 +1,7 @@
 //! Builds whose runs somebody else makes.
 
 use crate::background::in_background;
-use crate::errors::raised;
+use crate::errors::{exception, raised};
 use crate::model::read;
 use crate::pool::new_pool;
 use crate::study::Study;
@@ -54,13 +54,16 @@ impl Builder {
     ) -> PyResult<(usize, usize, usize)> {
         let dimension = points.shape()[1].max(1);
         let rows = points.as_slice()?.chunks_exact(dimension).map(<[f64]>::to_vec);
-        let read = |answer: &Bound<'_, PyAny>| -> PyResult<Result<ModelAnswer, String>> {
-            match answer.extract::<String>() {
-                Ok(cause) => Ok(Err(cause)),
-                Err(_) => Ok(read(answer)?.map_err(|error| error.to_string())),
+        let read = |(row, answer): (usize, &Bound<'_, PyAny>)| -> PyResult<Result<ModelAnswer, String>> {
+            if let Ok(cause) = answer.extract::<String>() {
+                return Ok(Err(cause));
             }
+            let found = read(answer, dimension);
+            let found =
+                found.map_err(|error| exception(py, "TellError", &format!("answer {row}: {}", error.value(py))));
+            Ok(found?.map_err(|error| error.to_string()))
         };
-        let answers = answers.iter().map(read).collect::<PyResult<Vec<_>>>()?;
+        let answers = answers.iter().enumerate().map(read).collect::<PyResult<Vec<_>>>()?;
         let answers: Vec<_> = rows.zip(answers).collect();
         let served = self.study.get().served(py, 1);
         let told = in_background(py, new_pool()?, None, move |service| {

@@ -1,7 +1,7 @@
 //! The function of a study as a model: runs call back into Python.
 
 use crate::background::Service;
-use crate::errors::ends_the_work;
+use crate::errors::{ends_the_work, exception};
 use nalgebra::DMatrix;
 use num_complex::Complex;
 use numpy::{Complex64, PyReadonlyArray1, PyReadonlyArray3, PyReadonlyArray4, PyUntypedArrayMethods};
@@ -47,7 +47,7 @@ impl PythonModel {
 impl Shared {
     fn answer(&self, py: Python<'_>, point: Vec<f64>, with_derivatives: bool) -> Result<ModelAnswer, ModelError> {
         let called = self.function.bind(py).call1((point.clone(), with_derivatives));
-        called.and_then(|answer| read(&answer)).map_err(|error| {
+        called.and_then(|answer| read(&answer, point.len())).map_err(|error| {
             let cause = describe(py, &error);
             if ends_the_work(py, &error) {
                 self.service.stop(error);
@@ -112,33 +112,59 @@ impl Model for PythonModel {
     }
 }
 
-/// What `pcc._model` makes of an answer: its form, its numbers, and their derivatives by each input.
-pub fn read(answer: &Bound<'_, PyAny>) -> PyResult<Result<ModelAnswer, ModelError>> {
-    let (form, numbers, derivatives): (String, Bound<'_, PyAny>, Option<Bound<'_, PyAny>>) = answer.extract()?;
-    if form == "eigenvalues" {
-        let found: PyReadonlyArray1<'_, Complex64> = numbers.extract()?;
-        return Ok(Ok(ModelAnswer::Eigenvalues(found.as_slice()?.to_vec())));
-    }
-    let values: PyReadonlyArray3<'_, f64> = numbers.extract()?;
-    let size = values.shape()[1];
-    let own = matrices(values.as_slice()?, size);
-    let by_input = match &derivatives {
-        None => Vec::new(),
-        Some(derivatives) => {
-            let found: PyReadonlyArray4<'_, f64> = derivatives.extract()?;
-            let count = own.len().max(1);
-            let all = matrices(found.as_slice()?, size);
-            all.chunks(count).map(<[DMatrix<f64>]>::to_vec).collect()
+/// What `pcc._model` makes of an answer: its form, its numbers, and their derivatives by each of so many inputs.
+///
+/// # Errors
+///
+/// `AnswerError` if it is not that, such as a tuple that somebody has made by hand; what is wrong with the system that
+/// it holds is the model's error.
+pub fn read(answer: &Bound<'_, PyAny>, inputs: usize) -> PyResult<Result<ModelAnswer, ModelError>> {
+    let py = answer.py();
+    let refused = |sentence: String| exception(py, "AnswerError", &sentence);
+    let (form, numbers, derivatives): (String, Bound<'_, PyAny>, Option<Bound<'_, PyAny>>) = answer
+        .extract()
+        .map_err(|_| refused("an answer is a tuple of its form, its numbers, and derivatives or None".to_owned()))?;
+    let count = match form.as_str() {
+        "eigenvalues" => {
+            let found: Option<PyReadonlyArray1<'_, Complex64>> = numbers.extract().ok();
+            let found = found.filter(|found| !found.is_empty());
+            let found = found.ok_or_else(|| refused("eigenvalues are a vector of complex128, not empty".to_owned()))?;
+            return Ok(Ok(ModelAnswer::Eigenvalues(found.as_array().iter().copied().collect())));
+        }
+        "first order" => 1,
+        "second order" => 3,
+        _ => {
+            let known = "\"first order\", \"second order\" and \"eigenvalues\"";
+            return Err(refused(format!("an answer has the form {form:?}; there are {known}")));
         }
     };
+    let values: Option<PyReadonlyArray3<'_, f64>> = numbers.extract().ok();
+    let is_square = |values: &PyReadonlyArray3<'_, f64>| {
+        let shape = values.shape();
+        shape[0] == count && shape[1] == shape[2] && shape[1] > 0
+    };
+    let values = values.filter(is_square).ok_or_else(|| {
+        refused(format!("the numbers of a {form} answer are float64 of the shape ({count}, n, n) with n of at least 1"))
+    })?;
+    let size = values.shape()[1];
+    let own = matrices(values.as_array().iter().copied(), size);
+    let mut by_input = Vec::new();
+    if let Some(derivatives) = &derivatives {
+        let expected = [inputs, count, size, size];
+        let found: Option<PyReadonlyArray4<'_, f64>> = derivatives.extract().ok();
+        let found = found.filter(|found| found.shape() == expected).ok_or_else(|| {
+            refused(format!(
+                "derivatives of this answer are float64 of the shape ({inputs}, {count}, {size}, {size}), an input each"
+            ))
+        })?;
+        by_input = matrices(found.as_array().iter().copied(), size);
+    }
     let system = match <[DMatrix<f64>; 3]>::try_from(own) {
-        Ok(own) => second_order(own).linearization(
-            by_input.into_iter().filter_map(|parts| <[_; 3]>::try_from(parts).ok()).map(second_order).collect(),
-        ),
-        Err(own) => {
-            let derivatives = by_input.into_iter().flatten().collect();
-            Ok(Linearization::first_order(own.into_iter().next().unwrap_or_default(), derivatives))
+        Ok(own) => {
+            let parts = by_input.chunks_exact(count).filter_map(|parts| <[_; 3]>::try_from(parts.to_vec()).ok());
+            second_order(own).linearization(parts.map(second_order).collect())
         }
+        Err(own) => Ok(Linearization::first_order(own.into_iter().next().unwrap_or_default(), by_input)),
     };
     Ok(system.map(|system| ModelAnswer::System(Box::new(system))))
 }
@@ -148,6 +174,7 @@ fn second_order([mass, damping, stiffness]: [DMatrix<f64>; 3]) -> SecondOrder {
 }
 
 /// Matrices that follow each other, row by row.
-fn matrices(numbers: &[f64], size: usize) -> Vec<DMatrix<f64>> {
-    numbers.chunks_exact((size * size).max(1)).map(|rows| DMatrix::from_row_slice(size, size, rows)).collect()
+fn matrices(numbers: impl Iterator<Item = f64>, size: usize) -> Vec<DMatrix<f64>> {
+    let numbers: Vec<f64> = numbers.collect();
+    numbers.chunks_exact(size * size).map(|rows| DMatrix::from_row_slice(size, size, rows)).collect()
 }

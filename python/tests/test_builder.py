@@ -101,3 +101,39 @@ def test_threads_may_tell_at_once(tmp_path, built, oscillator):
     assert builder.result == built
     del builder, tell
     assert not len(pcc.Builder(oscillator, journal=tmp_path / "j").ask())
+
+
+A, M, BY = np.eye(2)[None], np.array([np.eye(2)] * 3), np.zeros((2, 1, 2, 2))
+SHAPES = [
+    ("first order", np.zeros((1, 2, 3)), BY),
+    ("first order", np.zeros((1, 0, 0)), np.zeros((2, 1, 0, 0))),
+    ("first order", np.zeros((0, 2, 2)), BY),
+    ("first order", M, BY),
+    ("first order", A, BY[:1]),
+    ("first order", A, np.zeros((2, 1, 4, 1))),
+    ("first order", A, BY[0]),
+    ("first order", A.astype(np.float32), BY),
+    ("second order", A, BY),
+    ("second order", M, BY),
+    ("third order", A, BY),
+    ("eigenvalues", np.empty(0, complex), None),
+    ("eigenvalues", np.zeros((2, 2), complex), None),
+    ("eigenvalues", [1.0, 2.0], None),
+]
+
+
+@pytest.mark.parametrize("answer", SHAPES, ids=range(len(SHAPES)))
+def test_tuples_that_are_no_answers_are_refused(oscillator, answer):
+    builder = pcc.Builder(oscillator)
+    X = builder.ask()
+    with pytest.raises(pcc.TellError, match=r"^answer 1: .*(answer|eigenvalues)"):
+        builder.tell(X[:2], [*answers(oscillator, X[:1]), answer])
+    assert builder.ask().tolist() == X.tolist()
+
+
+def test_answers_are_read_whatever_their_order_in_memory(built, oscillator):
+    builder = pcc.Builder(oscillator)
+    while len(X := builder.ask()):
+        told = [(form, np.asfortranarray(A), by.copy().T.copy().T) for form, A, by in answers(oscillator, X)]
+        builder.tell(X, told)
+    assert builder.result == built
