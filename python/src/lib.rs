@@ -25,6 +25,7 @@ mod study;
 mod surrogate;
 
 use pyo3::prelude::*;
+use std::ffi::OsString;
 
 /// What `pcc` needs of the library.
 #[pymodule]
@@ -52,6 +53,6 @@ mod _pcc {
 
 /// The command line, with these arguments after the program's name; its exit code.
 #[pyfunction]
-fn main(py: Python<'_>, arguments: Vec<String>) -> u8 {
-    py.detach(|| pcc::cli::exit_code_of(std::iter::once("pcc".to_owned()).chain(arguments)))
+fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| pcc::cli::exit_code_of(std::iter::once("pcc".into()).chain(arguments)))
 }

@@ -28,6 +28,18 @@ def test_the_command_is_there(command, shipped):
     assert run("inspect", str(shipped / "clutch-r1.pcc"), "--check").returncode == 0
 
 
+@pytest.mark.skipif(os.name != "posix", reason="file names are text")
+@pytest.mark.parametrize("name", [b"\xff.pcc", b"a\xe9b.pcc", b"\xed\xa0\x80", "\U0001d707.pcc".encode()])
+def test_file_names_need_not_be_text(name, shipped, tmp_path):
+    path = os.path.join(os.fsencode(tmp_path), name)
+    try:
+        Path(os.fsdecode(path)).write_bytes((shipped / "clutch-r1.pcc").read_bytes())
+    except OSError:
+        pytest.skip("the file system has no such names")
+    found = subprocess.run([sys.executable, "-m", "pcc", "inspect", path], capture_output=True)
+    assert found.returncode == 0 and b"Traceback" not in found.stderr
+
+
 def test_there_is_no_second_program():
     assert SCRIPT.read_bytes().startswith(b"#!") and os.path.getsize(SCRIPT) < 1000
 
