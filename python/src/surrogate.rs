@@ -139,7 +139,11 @@ impl Surrogate {
         let rows = points.as_slice()?;
         let given = GivenPoints { surrogate: &self.artifact.surrogate, extrapolates };
         let found = match points.shape()[0] <= FEW {
-            true => pool()?.install(|| evaluate(given, rows, &Silent)),
+            true => {
+                let pool = pool()?;
+                // A thread of the pool may be busy for long; nobody is to wait for the interpreter meanwhile.
+                py.detach(|| pool.install(|| evaluate(given, rows, &Silent)))
+            }
             false => in_background(py, pool()?, None, |service| evaluate(given, rows, service))?,
         };
         found.map_err(|error| raised(py, error))
