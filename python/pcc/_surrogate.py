@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import html
 import json
 import os
 import re
-import secrets
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -15,6 +13,7 @@ import numpy as np
 
 from . import _pcc
 from ._errors import FileError, QuestionError
+from ._files import Kind, refuse_to_replace, save
 from ._points import as_points
 from ._progress import progress as _progress
 from ._results import Answer, Certificate, Comparison, Critical, Samples, Sensitivities, Sweep
@@ -49,10 +48,21 @@ class Surrogate:
         return cls(_pcc.Surrogate(data))
 
     def save(self, path: str | os.PathLike) -> None:
-        """Write it to a file: JSON if its name ends in ``.json``, else binary. The file appears whole or not at all."""
-        path = os.fspath(path)
+        """Write it to a file: JSON if its name ends in ``.json``, else binary. The file appears whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            The file. A surrogate there is replaced.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written, or exists and is no surrogate.
+        """
+        path = os.fsdecode(path)
         data = self.to_bytes("json" if path.lower().endswith(".json") else "binary")
-        _save(path, data)
+        save(path, data, Kind.SURROGATE)
         self._path = path
 
     def __reduce__(self):
@@ -227,11 +237,26 @@ class Surrogate:
     def report(
         self, path: str | os.PathLike, n: int = 1_000_000, seed: int = 1, *, progress: bool | None = None
     ) -> None:
-        """Put it on one page: an HTML file with its answer, pictures and tables."""
+        """Put it on one page: an HTML file with its answer, pictures and tables.
+
+        Parameters
+        ----------
+        path : path
+            The file. A page of ``pcc report`` there is replaced.
+        n, seed : int
+            Number and seed of the samples.
+
+        Raises
+        ------
+        FileError
+            If the file cannot be written, or exists and is no page of ``pcc report``.
+        """
+        path = os.fsdecode(path)
+        refuse_to_replace(path, Kind.PAGE)
         about = (self._path, len(self.to_bytes()))
         n, seed = _count(n, "n"), _count(seed, "seed", least=0)
         page = self._native.page(about, n, seed, _progress(progress))
-        _save(os.fspath(path), page.encode())
+        save(path, page.encode(), Kind.PAGE)
 
     def _ask(
         self,
@@ -355,24 +380,6 @@ def load(path: str | os.PathLike) -> Surrogate:
         return Surrogate(_pcc.Surrogate(data), path=path)
     except FileError as error:
         raise FileError(f"{path}: {error}") from None
-
-
-def _save(path: str, data: bytes) -> None:
-    """Writes a file whole or not at all."""
-    beside = os.path.join(os.path.dirname(path), f".pcc-{secrets.token_hex(8)}")
-    try:
-        try:
-            with open(beside, "xb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(beside, path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(beside)
-            raise
-    except OSError as error:
-        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
 def _runs(

@@ -81,3 +81,41 @@ def test_inspect_is_that_of_the_command(clutch, shipped):
     assert found == said
     assert clutch.names == [one["name"] for one in found["inputs"]]
     assert "clutch-r2" in repr(clutch) and "<pre>" in clutch._repr_html_()
+
+
+OTHERS = {
+    "study.toml": b'format = 1\nname = "belt"\n',
+    "points.csv": b"mu,k_p\n0.1,16e6\n",
+    "settings.json": b'{"colour": {"format": 1}}',
+    "notes.txt": b"\x89PC",
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_files_of_another_kind_are_not_replaced(clutch, tmp_path, name):
+    path = tmp_path / name
+    path.write_bytes(OTHERS[name])
+    before = clutch._path
+    with pytest.raises(pcc.FileError, match=f"{name}: exists and is not a surrogate"):
+        clutch.save(path)
+    with pytest.raises(pcc.FileError, match=f"{name}: exists and was not made by pcc report"):
+        clutch.report(path, n=1000)
+    assert path.read_bytes() == OTHERS[name] and clutch._path == before
+
+
+def test_files_are_replaced_by_their_like(clutch, shipped, tmp_path):
+    page, file, empty = tmp_path / "page.html", tmp_path / "clutch.pcc", tmp_path / "empty"
+    empty.touch()
+    surrogate = pcc.load(shipped / "clutch-r1.pcc")
+    for start in ["clutch-r2.pcc", "clutch-r2.json", "clutch-r1.json"]:
+        file.write_bytes((shipped / start).read_bytes())
+        surrogate.save(file)
+        assert pcc.load(file) == surrogate
+    surrogate.save(empty)
+    for n in (1000, 2000):
+        surrogate.report(page, n=n)
+    for path, write in [(page, surrogate.save), (file, surrogate.report)]:
+        before = path.read_bytes()
+        with pytest.raises(pcc.FileError, match="exists and "):
+            write(path)
+        assert path.read_bytes() == before
