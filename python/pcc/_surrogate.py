@@ -28,7 +28,8 @@ _KINDS = ("flutter", "divergence", "marginal")
 class Surrogate:
     """What a build makes: the eigenvalues of a model as polynomials of its inputs. See :func:`load` and :func:`build`.
 
-    A surrogate is pickled as the bytes of its file, and equal to others with the same bytes.
+    A surrogate is pickled as the bytes of its file, and equal to others with the same bytes. It has no hash: a
+    certificate changes its bytes.
     """
 
     def __init__(self, native: _pcc.Surrogate, study: Study | None = None, path: str = "") -> None:
@@ -71,8 +72,7 @@ class Surrogate:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Surrogate) and self.to_bytes() == other.to_bytes()
 
-    def __hash__(self) -> int:
-        return hash(self.to_bytes())
+    __hash__ = None  # type: ignore[assignment]
 
     # What is in it.
 
