@@ -140,7 +140,7 @@ pub fn share(value: f64) -> String {
 /// use pcc::report::share_range;
 /// assert_eq!(share_range(0.198991, 0.200561), "19.899 to 20.057 %");
 /// assert_eq!(share_range(0.1921, 0.2079), "19.21 to 20.79 %");
-/// assert_eq!(share_range(0.15, 0.25), "15 to 25 %");
+/// assert_eq!(share_range(0.15, 0.25), "15.0 to 25.0 %");
 /// assert_eq!(share_range(4.043e-6, 4.85e-6), "4.04·10⁻⁶ to 4.85·10⁻⁶");
 /// assert_eq!(share_range(1.0 - 4.85e-6, 1.0 - 4.043e-6), "1 − 4.85·10⁻⁶ to 1 − 4.04·10⁻⁶");
 /// assert_eq!(share_range(0.0, 3.689e-8), "0 to 3.7·10⁻⁸");
