@@ -19,10 +19,11 @@ const LITTLE: f64 = 0.01;
 /// # Examples
 ///
 /// ```
-/// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Normal, Uniform};
+/// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Parameters, Uniform};
 /// use pcc_evaluate::surrogate::TrainedDomain;
 /// let friction = Input::new("mu", Marginal::Uniform(Uniform::new(0.0, 0.5)?));
-/// let stiffness = Input::new("k", Marginal::Normal(Normal::new(2e6, 1e5)?));
+/// let normal = Marginal::named("normal", &Parameters::of([("mean", 2e6), ("std", 1e5)]))?;
+/// let stiffness = Input::new("k", normal);
 /// let inputs = InputSpace::new(vec![friction, stiffness])?;
 /// let runs: [&[f64]; 3] = [&[0.9, -1.5], &[-0.9, 2.0], &[0.0, 0.1]];
 /// let domain = TrainedDomain::of(&inputs, runs).expect("one input is normal");

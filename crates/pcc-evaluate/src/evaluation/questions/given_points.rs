@@ -70,7 +70,7 @@ pub enum PointError {
 /// let surrogate = artifact::decode(include_bytes!("../../../../../surrogates/clutch-r2.pcc"))?.surrogate;
 /// let points = GivenPoints { surrogate: &surrogate, extrapolates: false };
 /// let mut max_re = [0.0; 2];
-/// points.max_re(&[0.1, 16e6, 0.4, 16e6], &mut max_re, &Silent)?;
+/// points.max_re(&[0.05, 16e6, 0.4, 16e6], &mut max_re, &Silent)?;
 /// assert!(max_re[0] < 0.0 && max_re[1] > 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -250,10 +250,10 @@ impl InputSpace {
     /// # Examples
     ///
     /// ```
-    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Normal, TruncatedNormal};
-    /// let half = TruncatedNormal::new(Normal::new(0.0, 1.0)?, Some(0.0), None)?;
-    /// let space = InputSpace::new(vec![Input::new("x", Marginal::TruncatedNormal(half))])?;
-    /// assert!((space.middle()[0] - 0.674_489_750_196_081_7).abs() < 1e-14);
+    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Parameters};
+    /// let law = Marginal::named("exponential", &Parameters::of([("mean", 3.0)]))?;
+    /// let space = InputSpace::new(vec![Input::new("x", law)])?;
+    /// assert!((space.physical(&space.middle())[0] - 3.0 * 2f64.ln()).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn middle(&self) -> Vec<f64> {
