@@ -257,7 +257,9 @@ def test_forked_processes_have_threads_of_their_own(clutch, points):
 
 def interrupted(code: str) -> str:
     """What a program says that is sent Ctrl-C once it has said "ready"."""
-    program = textwrap.dedent("import os, time, pcc, systems\n") + textwrap.dedent(code)
+    # Programs that were started in the background do not listen to Ctrl-C unless they say so.
+    listening = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    program = listening + "import os, time, pcc, systems\n" + textwrap.dedent(code)
     child = subprocess.Popen(
         [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
         cwd=os.path.dirname(__file__),
