@@ -20,7 +20,8 @@ pub(super) fn sparkline(input: &Input, trained: Option<[f64; 2]>) -> Sparkline {
         None => "filled, since runs fill it".to_owned(),
     };
     Sparkline {
-        description: format!("density of {} from {}, {filled}", input.name, words([from, to])),
+        title: format!("density of {}", input.name),
+        description: format!("from {}, {filled}", words([from, to])),
         curve,
         filled: trained.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
     }

@@ -18,17 +18,20 @@ const MARGIN: f64 = 1.5;
 /// ```
 /// use pcc_charts::Sparkline;
 /// let triangle = Sparkline {
+///     title: "density of x".to_string(),
 ///     description: "triangular, from 0 to 2".to_string(),
 ///     curve: vec![[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]],
 ///     filled: [0.5, 1.0],
 /// };
 /// let svg = triangle.to_svg();
-/// assert!(svg.contains("<title>triangular, from 0 to 2</title>"));
+/// assert!(svg.contains("<title>density of x</title><desc>triangular, from 0 to 2</desc>"));
 /// // From one to the other, half as high at the first.
 /// assert!(svg.contains("M30.8 26.5L30.8 14L60 1.5L60 26.5z"), "{svg}");
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sparkline {
+    /// What it is.
+    pub title: String,
     /// Text alternative: what the picture shows.
     pub description: String,
     /// Points in ascending order of the first coordinate; heights count from 0. Those that are not finite are skipped.
@@ -66,7 +69,8 @@ impl Sparkline {
         }
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"chart chart-sparkline chart-blue\" role=\"img\" \
-             viewBox=\"0 0 {WIDTH} {HEIGHT}\"><title>{}</title>\n{}{}{}</svg>",
+             viewBox=\"0 0 {WIDTH} {HEIGHT}\"><title>{}</title><desc>{}</desc>\n{}{}{}</svg>",
+            escape(&self.title),
             escape(&self.description),
             base.draw("chart-axis"),
             area.draw("chart-area"),
@@ -110,7 +114,7 @@ mod tests {
     use super::*;
 
     fn svg(curve: Vec<[f64; 2]>, filled: [f64; 2]) -> String {
-        Sparkline { description: "</svg><script>".to_string(), curve, filled }.to_svg()
+        Sparkline { title: "</title>".to_string(), description: "</svg><script>".to_string(), curve, filled }.to_svg()
     }
 
     #[test]
