@@ -12,14 +12,15 @@ const SAME: f64 = 1e-9;
 
 /// Standardized points at the ends of discrete inputs at which no point of `tried` is.
 pub(super) fn end_levels(inputs: &InputSpace, tried: &Samples) -> Vec<Vec<f64>> {
-    let medians: Vec<f64> = inputs.inputs().iter().map(|input| input.marginal.germ().at(0.0)).collect();
+    let medians = inputs.middle();
     let mut points = Vec::new();
     for (number, input) in inputs.inputs().iter().enumerate().filter(|(_, input)| input.marginal.is_discrete()) {
         for end in input.marginal.support().map(|end| input.marginal.standardized(end)) {
             let is_there = |point: &[f64]| (point[number] - end).abs() <= SAME * (1.0 + end.abs());
             if !tried.points().any(is_there) {
-                points.push(medians.clone());
-                points.last_mut().expect("just pushed")[number] = end;
+                let mut point = medians.clone();
+                point[number] = end;
+                points.push(point);
             }
         }
     }

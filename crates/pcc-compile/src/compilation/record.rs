@@ -165,9 +165,7 @@ pub(super) fn ended(
         settings.push(setting("unstable_runs", SettingValue::Integer(sight.unstable as u64)));
         if let Some(clearance) = sight.clearance {
             settings.extend([number("nearest_excess", clearance.nearest), number("nearest_error", clearance.error)]);
-            let mut laws = surrogate.inputs.inputs().iter().map(|input| input.marginal.support());
-            // In a tail there is more than any number of points has seen.
-            if laws.any(|[lower, upper]| !(lower.is_finite() && upper.is_finite())) {
+            if surrogate.inputs.is_unbounded() {
                 settings.push(setting("nearest_points", SettingValue::Integer(sight.points as u64)));
             }
         }

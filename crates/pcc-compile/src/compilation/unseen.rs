@@ -97,8 +97,7 @@ fn is_slowing(followed: &Followed<'_>, group: &Group) -> bool {
 
 /// Whether an eigenvalue of a complex group is predicted below the real axis in the tail of an input.
 fn crosses_the_axis(study: &Study, fit: Option<&GroupFit>, observer: &dyn Observer) -> Result<bool, Interrupted> {
-    let mut supports = study.inputs.inputs().iter().flat_map(|input| input.marginal.support());
-    let fit = fit.filter(|fit| fit.fits.len() == fit.values.len() && supports.any(f64::is_infinite));
+    let fit = fit.filter(|fit| fit.fits.len() == fit.values.len() && study.inputs.is_unbounded());
     let Some(fit) = fit else { return Ok(false) };
     let block = at_judged_points(&super::record::of_fits(study, &fit.output, &fit.fits), POINTS, observer)?;
     Ok(block.eigenvalues.iter().flatten().any(|lambda| lambda.im <= 0.0))

@@ -260,6 +260,20 @@ impl InputSpace {
         self.inputs.iter().map(|input| input.marginal.germ().at(0.0)).collect()
     }
 
+    /// Whether an input has no lower or no upper bound: no number of points sees all of its tail.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use pcc_evaluate::probability::inputs::{Input, InputSpace, Marginal, Parameters};
+    /// let law = Marginal::named("exponential", &Parameters::of([("mean", 3.0)]))?;
+    /// assert!(InputSpace::new(vec![Input::new("x", law)])?.is_unbounded());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn is_unbounded(&self) -> bool {
+        self.inputs.iter().flat_map(|input| input.marginal.support()).any(f64::is_infinite)
+    }
+
     /// Whether every coordinate is a value of its input.
     ///
     /// # Errors
