@@ -4,6 +4,9 @@
 use crate::support::command::{output, refusal};
 use crate::support::studies::{built_from, folder_with, json};
 use crate::support::{in_one_line, text};
+use pcc_compile::reference::monte_carlo;
+use pcc_compile::study::Study;
+use pcc_evaluate::foundation::Silent;
 use std::f64::consts::TAU;
 use std::fs;
 
@@ -140,6 +143,21 @@ fn rigid_body_motion_is_counted_and_can_be_said() {
     // A spring so soft that digits of the input are all that is left of it.
     let folder = folder_with(&free("", "1e4 + 1e-6"));
     assert_eq!(json(folder.path(), &["build", "study.toml", "-o", "built.pcc"])["rigid_body_modes"], 0);
+}
+
+/// With little friction a second motion of the clutch is nearly free at some points, and hides the first on one side.
+#[test]
+fn rigid_body_motion_is_found_beside_motion_that_is_nearly_free() {
+    for (inputs, upper) in [(1, 0.0701), (2, 0.1), (4, 0.0723), (8, 0.0435)] {
+        let friction = format!("lower = 0.0, upper = {upper} ");
+        let text = text(&format!("surrogates/clutch-r{inputs}.toml"));
+        let mut study = Study::from_toml(&text.replace("lower = 0.0, upper = 0.5 ", &friction)).unwrap();
+        for seed in 1..=12 {
+            study.seed = seed;
+            let found = monte_carlo(&study, 8, seed, &Silent).unwrap().rigid_body_modes;
+            assert_eq!(found, 4, "{inputs} inputs, seed {seed}");
+        }
+    }
 }
 
 #[test]

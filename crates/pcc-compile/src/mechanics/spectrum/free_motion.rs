@@ -43,6 +43,10 @@ pub fn free_motion(system: &SecondOrder, most: usize) -> Option<usize> {
         return Some(0);
     }
     let left = null_space(&system.stiffness.transpose(), most.min(size))?;
+    // They have the same dimension, unless something nearly free is in the way of one.
+    if left.ncols() != right.ncols() {
+        return None;
+    }
     let held = rank(&system.damping, &left, &right);
     Some((2 * right.ncols() - held).min(most))
 }
