@@ -104,6 +104,20 @@ fn rare_flutter_of_the_clutch_is_found_near_the_boundary() {
 }
 
 /// λ = −c ± i…: the largest is −c at the lower end of c, and is known nearly to rounding.
+/// Seeds whose judged points on the unstable side were all tried after one batch, and runs found two there or one.
+#[test]
+fn a_share_of_one_in_ten_thousand_is_looked_for_until_it_is_known() {
+    for seed in [9, 18] {
+        let text =
+            text("surrogates/clutch-r4.toml").replace("lower = 0.0, upper = 0.5 ", "lower = 0.0, upper = 0.0701 ");
+        let study = Study { seed, ..Study::from_toml(&text).unwrap() };
+        let surrogate = build(&study);
+        let runs = surrogate.training.counts.direct_computations;
+        assert!(runs <= 30 && surrogate.decision.proportion_error.is_some(), "seed {seed}: {runs} runs");
+        assert_eq!(setting(&surrogate, "unstable_runs"), None, "seed {seed}: it was seen");
+    }
+}
+
 #[test]
 fn two_oscillators_are_stable_everywhere_with_the_distance_of_the_less_damped() {
     let study = "format = 1\nname = \"two\"\n[model]\nkind = \"matrices\"\nM = { diagonal = [1, 1] }\nC = { diagonal = \

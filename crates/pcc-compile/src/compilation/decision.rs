@@ -42,7 +42,7 @@ use super::near_boundary::zone_share;
 use super::trials::{Class, Judge, Shares, is_not_unstable};
 use super::undecided::{is_chance, misjudged, undecided};
 use crate::campaign::Run;
-use crate::fitting::fit::Fitted;
+use crate::fitting::fit::{FLATTERY, Fitted};
 use pcc_evaluate::components::{Verdict, spectral_abscissa};
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::surrogate::{Decision, Quantile, Surrogate};
@@ -53,8 +53,9 @@ const LEVELS: [f64; 9] = [0.005, 0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975, 0.99
 /// Blind residuals that an estimate takes at least.
 const LEAST_BLIND: usize = 8;
 
-/// How much smaller residuals look at points that chose the settings of the fit, about.
-const FLATTERY: f64 = 2.0;
+/// Of fewer points on the rarer side, some batches of runs that look for it have soon tried those that matter: where
+/// nothing else tells of it, more points are evaluated.
+const FEW_RARE: usize = 100;
 
 /// Recombination gives coalescing eigenvalues back to the root of rounding, relative to the largest.
 const RECOMBINATION: f64 = 1e-7;
@@ -184,6 +185,9 @@ pub(super) fn judge(
         judgement = judged(&found);
     }
     if purpose.tolerance.is_some() {
+        let has_few = judgement.is_blind() && (1..FEW_RARE).contains(&judge.rarest(&classes));
+        let more = has_few.then(|| Judge::new(surrogate, runs, points, observer)).transpose()?;
+        let judge = more.as_ref().unwrap_or(&judge);
         judgement.excess.clone_from(&judge.block().excess);
         judgement.rarer = judge.rarer(judgement.missed());
     }

@@ -35,8 +35,9 @@ pub(super) fn near_boundary(
         let farther = |best: usize, at: usize| if distances[at] > distances[best] { at } else { best };
         let of_all = || (0..candidates.len()).reduce(farther);
         let of_rare = || (0..candidates.len()).filter(is_rare).reduce(farther);
-        let farthest = if is_blind && turn % 2 == 0 { of_rare().or_else(of_all) } else { of_all() };
-        let Some(farthest) = farthest.filter(|&at| distances[at] > 0.0) else { break };
+        let is_new = |at: &usize| distances[*at] > 0.0;
+        let rare = if is_blind && turn % 2 == 0 { of_rare().filter(is_new) } else { None };
+        let Some(farthest) = rare.or_else(of_all).filter(is_new) else { break };
         let point = candidates[farthest].clone();
         for (distance, candidate) in distances.iter_mut().zip(&candidates) {
             *distance = distance.min(square_distance(candidate, &point));
@@ -124,5 +125,11 @@ mod tests {
         let chosen = near_boundary(&surrogate, (&block.excess, &stable(&block.excess)), &tried, (6, true));
         let is_stable = |point: &Vec<f64>| surrogate.top(&surrogate.evaluate(point)).excess <= 0.0;
         assert!(chosen.iter().step_by(2).all(is_stable) && chosen.len() == 6, "a fifth is stable: {chosen:?}");
+        // Where all points of that side were tried, those around it are left.
+        let mut rarer = vec![false; POINTS];
+        let first = block.excess.iter().position(|&excess| excess <= 0.0).unwrap();
+        rarer[first] = true;
+        let tried = Samples::new(2, judged_point(&surrogate, first));
+        assert_eq!(near_boundary(&surrogate, (&block.excess, &rarer), &tried, (6, true)).len(), 6);
     }
 }

@@ -16,8 +16,8 @@
 //!
 //! so a design of N runs is judged without a single refit. Without derivatives a run is one value and Δ_i = c_i/A_ii.
 //! How the r + 1 parameters of the prior are found is said in `prior_search`; being tuned on the same runs makes this
-//! error look up to twice smaller than it is. At the points that a grown design adds, the prior of the smaller one is
-//! judged blindly.
+//! error look up to twice smaller than it is. At the points that a design has grown by since, a prior is judged
+//! blindly.
 //!
 //! Derivatives are equations like values: K holds their covariances (Solak, Murray-Smith, Leithead, Leith and Rasmussen
 //! 2003, *Derivative observations in Gaussian process models of dynamic systems*). Where they are not as good as the
@@ -28,7 +28,7 @@
 use super::method::{self, Entry, FitMethod, MAX_DEGREE, MethodFit, Profile, S2_TARGET, Smooth, Solver};
 use super::prior_search::{Found, Search, most_runs};
 use super::regularized::Regularized;
-use super::{BlindResiduals, Fitted};
+use super::{BlindResiduals, FLATTERY, Fitted};
 use crate::fitting::regression::{BasisTables, Equations, ErrorMeasures, Gradients, Response};
 use nalgebra::{DMatrix, DVector};
 use pcc_evaluate::foundation::{Interrupted, Observer};
@@ -51,6 +51,9 @@ const SETTLED: f64 = 3e-5;
 
 /// Growth of the points a search can use that is worth another search.
 const WORTH_A_SEARCH: f64 = 1.3;
+
+/// γ, minus the mean logarithm of a variable with an exponential distribution.
+const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
 
 /// So many new blind residuals need no older ones beside them.
 const ENOUGH_BLIND: usize = 40;
@@ -113,7 +116,7 @@ impl Solver for Ready<'_> {
 pub struct Previous {
     /// The prior and weight of derivatives that were best, and their error; the next search starts from them.
     found: Found,
-    /// Number of points of the design on which it was found.
+    /// Number of points of the design on which it was searched for; to later ones it is blind.
     points: usize,
     /// Blind residuals of the last points.
     blind: Option<BlindResiduals>,
@@ -170,18 +173,22 @@ pub fn fit(
         return Ok((Fitted::constant(inputs, response.values), previous.clone()));
     };
     let problem = Problem::new(tables, response, variance.sqrt(), settings.max_degree);
-    let found = problem.best_prior(previous, observer)?;
+    let (found, points) = problem.best_prior(previous, observer)?;
     observer.check()?;
     let Some(solution) = problem.solve(&found) else {
         let mean = Fitted::mean(tables, response, variance, observer)?;
         return Ok((mean, Previous::nothing(inputs)));
     };
     let is_unchanged = (&found.prior, found.weight) == (&previous.found.prior, previous.found.weight);
-    let blind = problem.blind_residuals(previous, is_unchanged.then_some(&solution), found.error);
-    let found_before = Previous { found, points: response.values.len(), blind };
+    let blind = problem.blind_residuals(previous, &solution, is_unchanged, found.error);
+    let found_before = Previous { found, points, blind };
     let dropped_share = if response.gradients.is_some() { DROPPED_SHARE_WITH_DERIVATIVES } else { DROPPED_SHARE };
-    let (indices, mut coefficients, residuals, left_out) =
+    let Sparse { indices, mut coefficients, residuals, left_out, dropped } =
         solution.without_negligible_terms(dropped_share, problem.resolution);
+    let mut blind_residuals = found_before.blind.clone();
+    if let Some(BlindResiduals { first, values }) = &mut blind_residuals {
+        values.iter_mut().zip(dropped.iter().skip(*first)).for_each(|(rest, dropped)| *rest += dropped * problem.scale);
+    }
     coefficients.iter_mut().for_each(|coefficient| *coefficient *= problem.scale);
     coefficients[0] += problem.mean;
     // Standardized values have unit variance.
@@ -192,7 +199,7 @@ pub fn fit(
         indices: IndexSet::from_unsorted(indices),
         coefficients,
         errors: Some(errors),
-        blind_residuals: found_before.blind.clone(),
+        blind_residuals,
         leave_one_out_residuals: Some(left_out.iter().map(|residual| residual * problem.scale).collect()),
         derivative_weight: response.gradients.map(|_| found_before.found.weight),
         degree,
@@ -235,8 +242,9 @@ impl<'a> Problem<'a> {
         Self { tables, equations, targets: DVector::from_vec(targets), mean, scale, resolution, degree }
     }
 
-    /// The prior found from the previous one, unless that is good enough or there is too little new to search with.
-    fn best_prior(&self, previous: &Previous, observer: &dyn Observer) -> Result<Found, Interrupted> {
+    /// The prior found from the previous one, unless that is good enough or there is too little new to search with, and
+    /// the number of points that it was searched for on.
+    fn best_prior(&self, previous: &Previous, observer: &dyn Observer) -> Result<(Found, usize), Interrupted> {
         let Self { tables, equations, targets, resolution, degree, .. } = self;
         let search = Search { tables, equations, targets, resolution: *resolution, degree: *degree };
         let kept = |known: &Found| {
@@ -245,37 +253,43 @@ impl<'a> Problem<'a> {
         };
         let inputs = tables.inputs();
         if !search.is_determined() {
-            return Ok(kept(&Found::nothing(inputs)));
+            return Ok((kept(&Found::nothing(inputs)), equations.samples()));
         }
         let is_settled = previous.found.error < SETTLED.ln();
         let used = |points: usize| points.min(most_runs(equations, inputs)) as f64;
         if is_settled || used(equations.samples()) < WORTH_A_SEARCH * used(previous.points) {
-            return Ok(kept(&previous.found));
+            return Ok((kept(&previous.found), previous.points));
         }
-        search.best(&previous.found, observer)
+        Ok((search.best(&previous.found, observer)?, equations.samples()))
     }
 
-    /// What the prior of a previous design, chosen without the points that are new here, misses at each of them.
-    /// Residuals of points that were new on designs before are kept while there are few, scaled by how far errors fell
-    /// since. `unchanged` is the solution with the previous prior, if it is known.
-    fn blind_residuals(&self, previous: &Previous, unchanged: Option<&Solution>, error: f64) -> Option<BlindResiduals> {
+    /// What the previous prior, which was chosen without the last points, misses at each of them. Residuals of points
+    /// that were blind to priors before are kept while there are few, scaled by how far errors fell since; but what
+    /// `solution`, the present one, misses there flatters by [`FLATTERY`] at most.
+    fn blind_residuals(
+        &self,
+        previous: &Previous,
+        solution: &Solution,
+        is_unchanged: bool,
+        error: f64,
+    ) -> Option<BlindResiduals> {
         let first = previous.points;
         if first == 0 || first >= self.equations.samples() {
             return previous.blind.clone();
         }
-        let left_out = match unchanged {
-            Some(solution) => solution.left_out.clone(),
-            None => self.solve(&previous.found)?.left_out,
-        };
+        let other = if is_unchanged { None } else { Some(self.solve(&previous.found)?) };
+        let left_out = &other.as_ref().unwrap_or(solution).left_out;
         let new = left_out.iter().skip(first).map(|residual| residual * self.scale);
-        if new.len() >= ENOUGH_BLIND {
+        let before = previous.blind.as_ref().filter(|_| new.len() < ENOUGH_BLIND);
+        let Some(before) = before.filter(|before| before.first < first) else {
             return Some(BlindResiduals { first, values: new.collect() });
-        }
+        };
         let fallen = if previous.found.error.is_finite() { (error - previous.found.error).exp() } else { 1.0 };
-        let mut blind = previous.blind.clone().unwrap_or(BlindResiduals { first, values: Vec::new() });
-        blind.values.iter_mut().for_each(|residual| *residual *= fallen);
-        blind.values.extend(new);
-        Some(blind)
+        let kept = before.values.iter().zip(before.first..first).map(|(residual, i)| {
+            let most = (FLATTERY * solution.left_out[i] * self.scale).abs();
+            (fallen * residual).clamp(-most, most)
+        });
+        Some(BlindResiduals { first: before.first, values: kept.chain(new).collect() })
     }
 
     /// The weighted minimum-norm coefficients on the likeliest terms, refined: with B = Ψ S^{1/2}, residuals of
@@ -311,16 +325,21 @@ impl<'a> Problem<'a> {
     }
 }
 
+/// A solution without negligible terms.
+struct Sparse {
+    indices: Vec<MultiIndex>,
+    coefficients: Vec<f64>,
+    /// With what was dropped, as are those left out.
+    residuals: Vec<f64>,
+    left_out: Vec<f64>,
+    /// What was dropped, at the runs.
+    dropped: Vec<f64>,
+}
+
 impl Solution {
     /// Drops the smallest terms as long as they are together a small share of the leave-one-out error; {0} stays.
-    /// Returns indices, coefficients, residuals, and leave-one-out residuals, to which the dropped terms are added.
-    fn without_negligible_terms(
-        self,
-        dropped_share: f64,
-        resolution: f64,
-    ) -> (Vec<MultiIndex>, Vec<f64>, Vec<f64>, Vec<f64>) {
-        let samples = self.residuals.len() as f64;
-        let error = (self.left_out.norm_squared() / samples).sqrt().max(resolution);
+    fn without_negligible_terms(self, dropped_share: f64, resolution: f64) -> Sparse {
+        let error = typical(&self.left_out).max(resolution);
         let mut order: Vec<usize> = (0..self.indices.len()).filter(|&k| !self.indices[k].is_constant()).collect();
         order.sort_by(|&a, &b| self.coefficients[a].abs().total_cmp(&self.coefficients[b].abs()).then(a.cmp(&b)));
         let (mut kept, mut dropped) = (vec![true; self.indices.len()], DVector::zeros(self.residuals.len()));
@@ -334,11 +353,22 @@ impl Solution {
             dropped.axpy(self.coefficients[k], &self.columns.column(k), 1.0);
         }
         let residuals = (self.residuals + &dropped).iter().copied().collect();
-        let left_out = (self.left_out + dropped).iter().copied().collect();
+        let left_out = (self.left_out + &dropped).iter().copied().collect();
         let terms = self.indices.into_iter().zip(self.coefficients.iter().copied()).zip(kept);
         let (indices, coefficients) = terms.filter(|(_, kept)| *kept).map(|(term, _)| term).unzip();
-        (indices, coefficients, residuals, left_out)
+        Sparse { indices, coefficients, residuals, left_out, dropped: dropped.iter().copied().collect() }
     }
+}
+
+/// The size of residuals where few are much larger than all others, which have nothing to say of the rest: their
+/// geometric mean, brought to the standard deviation of a normal distribution, e^((γ + ln 2)/2) times as large; or
+/// their root mean square, if that is smaller.
+fn typical(residuals: &DVector<f64>) -> f64 {
+    let count = residuals.len() as f64;
+    let root_mean_square = (residuals.norm_squared() / count).sqrt();
+    let logarithm = residuals.iter().map(|rest| rest.abs().max(f64::MIN_POSITIVE).ln()).sum::<f64>() / count;
+    let to_deviation = 0.5 * (EULER_GAMMA + std::f64::consts::LN_2);
+    root_mean_square.min((logarithm + to_deviation).exp())
 }
 
 #[cfg(test)]
@@ -401,6 +431,32 @@ mod tests {
         let (fitted, _) = fit(&tables(&large), response(&values), &settings(), &found_before, &Silent).unwrap();
         let blind = fitted.blind_residuals.unwrap();
         assert_eq!((blind.first, blind.values.len()), (20, 20));
+    }
+
+    /// A peak in a corner, which fits of few points miss wherever they do not know it.
+    fn peaked(point: &[f64]) -> f64 {
+        (6.0 * (point[0] + point[1] - 2.0)).exp()
+    }
+
+    #[test]
+    fn blind_residuals_fall_with_what_the_present_fit_misses_at_their_points() {
+        let sizes = [6, 15, 18, 21, 24];
+        let mut previous = Previous::nothing(2);
+        for (level, size) in sizes.into_iter().enumerate() {
+            let samples = samples(2, &sizes[..=level]);
+            let values: Vec<f64> = samples.points().map(peaked).collect();
+            let response = Response::of(&values, 0.0);
+            let (fitted, next) = fit(&tables(&samples), response, &settings(), &previous, &Silent).unwrap();
+            let left_out = fitted.leave_one_out_residuals.unwrap();
+            let largest = left_out.iter().fold(0.0, |largest: f64, rest| largest.max(rest.abs()));
+            for (i, residual) in fitted.blind_residuals.iter().flat_map(|blind| (blind.first..).zip(&blind.values)) {
+                // Terms that were dropped are in one of them alone.
+                let most = FLATTERY * left_out[i].abs() + 0.1 * largest;
+                assert!(i >= previous.points || residual.abs() <= most, "{size} points, {i}: {residual:e}, {most:e}");
+            }
+            previous = next;
+        }
+        assert!(previous.points < 24, "a prior is found again only where a design has grown");
     }
 
     /// Noise is not called accurate, however few points there are.

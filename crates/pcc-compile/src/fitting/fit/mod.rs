@@ -26,6 +26,9 @@ use pcc_evaluate::surrogate::StopReason;
 /// Weights of derivatives beside values that fits try: as good as values, less and less to be trusted, not used.
 pub(crate) const WEIGHTS: [f64; 4] = [1.0, 0.1, 0.01, 0.0];
 
+/// How much smaller leave-one-out residuals look at points on which a fit was tuned, about.
+pub(crate) const FLATTERY: f64 = 2.0;
+
 /// Leave-one-out residuals at points on which the fit was not tuned, so that they flatter it little or not at all: for
 /// the minimum-norm fit, points that its prior has not seen; for matching pursuit, points outside the folds, which only
 /// chose degree, norm and number of terms; for stepwise regression all, because its terms are chosen by R².
