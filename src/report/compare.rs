@@ -62,6 +62,8 @@ pub struct CompareReport {
     pub failed: u64,
     /// Number of eigenvalues of the model that are rigid-body motion, and left out.
     pub rigid_body_modes: usize,
+    /// Points at which the model has as many eigenvalues as the surrogate: errors of components are over these.
+    pub matched_points: u64,
     /// Largest error of the mean of Re λ among the modes: the paper's mean error.
     pub largest_mean_error_percent: Option<f64>,
     /// Largest error of the variance of Re λ among the modes: the paper's variance error.
@@ -136,6 +138,7 @@ impl CompareReport {
             falsely_unstable: comparison.falsely_unstable(),
             failed: comparison.verdicts.failed(),
             rigid_body_modes: comparison.rigid_body_modes,
+            matched_points: comparison.matched_points(),
             largest_mean_error_percent: largest(|component| component.mean_error_percent),
             largest_variance_error_percent: largest(|component| component.variance_error_percent),
             dependence: DependenceReport::of(&surrogate.inputs),
@@ -224,6 +227,12 @@ impl CompareReport {
         }
         let [mean, variance] = [self.largest_mean_error_percent, self.largest_variance_error_percent].map(percentage);
         facts.add("largest error", format!("mean {mean} %, variance {variance} % (of Re λ)"), "");
+        let unmatched = self.samples - self.failed - self.matched_points;
+        if unmatched > 0 {
+            let matched = plural(self.matched_points as usize, "point");
+            let why = format!("compared; at the other {} the model has fewer eigenvalues", count(unmatched));
+            facts.add("components", matched, why);
+        }
         facts
     }
 }

@@ -332,6 +332,21 @@ fn modes_are_numbered_at_medians() {
     assert!((growth(1) + 0.1).abs() < 1e-9 && (growth(2) + 0.25).abs() < 1e-9, "{modes:?}");
 }
 
+/// One in twenty thousand is overdamped, x > 20: there the model has one frequency, and the surrogate two.
+#[test]
+fn points_at_which_components_cannot_be_compared_are_counted() {
+    let folder = built_from(
+        "format = 1\nname = \"two\"\n[model]\nkind = \"matrices\"\nM = [[1, 0], [0, 1]]\nC = [[\"x\", 0], [0, 0.5]]\n\
+         K = [[100, 0], [0, 400]]\n[inputs]\nx = { distribution = \"exponential\", mean = 2.0 }\n",
+    );
+    let arguments = ["compare", "built.pcc", "--study", "study.toml", "-n", "1e5"];
+    let overdamped = 100_000 - json(folder.path(), &arguments)["matched_points"].as_u64().unwrap();
+    let expected = 1e5 * (-10.0_f64).exp();
+    assert!(overdamped > 0 && (overdamped as f64 - expected).abs() <= 4.5 * expected.sqrt(), "{overdamped}");
+    let text = in_one_line(&output(folder.path(), &arguments));
+    assert!(text.contains(&format!("compared; at the other {overdamped} the model has fewer")), "{text}");
+}
+
 /// Far out in the tail the oscillator is overdamped, at points that no run has: x − 1.1 > 10.
 #[test]
 fn tails_that_no_run_has_seen_may_diverge() {

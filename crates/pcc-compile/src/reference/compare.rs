@@ -188,6 +188,11 @@ impl Comparison {
         Self { samples, verdicts: Verdicts::default(), rigid_body_modes: 0, components: Vec::new() }
     }
 
+    /// Points at which the model has as many eigenvalues as the surrogate: errors of components are over these.
+    pub fn matched_points(&self) -> u64 {
+        self.components.first().map_or(0, |component| component.model.count())
+    }
+
     /// Counts on whose stability model and surrogate disagree.
     pub(super) fn classify(&mut self, model: impl Iterator<Item = Judged>, block: &Block) {
         self.verdicts.classify(model, block);
