@@ -23,6 +23,7 @@ mod page;
 mod paper_charts;
 mod part;
 mod reproduction;
+mod section_chart;
 mod sensitivity;
 mod shapley;
 mod sight;

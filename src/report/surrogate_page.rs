@@ -7,6 +7,7 @@ use super::eval::EvalReport;
 use super::inspect::InspectReport;
 use super::numbers::{share, significant};
 use super::page::Page;
+use super::section_chart::section_chart;
 use pcc_charts::Color;
 use pcc_evaluate::components::Block;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
@@ -133,13 +134,20 @@ impl SurrogatePage<'_> {
         let shown = self.points.len().min(SCATTER);
         let mut charts = Vec::new();
         let few = self.block.first(shown);
-        for j in inputs.into_iter().take(DRAWN_INPUTS) {
+        let influential = inputs.into_iter().take(DRAWN_INPUTS);
+        for j in influential.clone() {
             let input = &self.surrogate.inputs.inputs()[j];
             let x: Vec<f64> = self.points[..shown].iter().map(|point| input.marginal.physical(point[j])).collect();
             charts.extend(mode_charts(input, &x, &self.surrogate.labels(), &few));
         }
         page.charts(&charts);
         page.table(&self.eval.mode_table());
+        page.section("Along the most influential inputs");
+        page.paragraph(
+            "The other inputs stay at their medians. Intervals say how far the surrogate may be off at a point, by runs \
+             left out of the fit.",
+        );
+        page.charts(&influential.map(|j| section_chart(self.surrogate, j)).collect::<Vec<_>>());
     }
 
     fn content(&self, page: &mut Page) {
