@@ -4,7 +4,7 @@ use super::commands::{build, convert, man, report, reproduce, run, version};
 use super::points::PointsReport;
 use crate::report::{
     BuildReport, CertifyPlanReport, CertifyReport, CompareReport, DesignReport, EvalReport, IngestReport,
-    InspectReport, JournalReport, MergeReport, PartReport, SweepReport,
+    InspectReport, JournalReport, MergeReport, ModesReport, PartReport, SweepReport,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -83,6 +83,7 @@ pub fn schemas() -> Vec<(&'static str, String)> {
         ("journal", schema::<JournalReport>()),
         ("man", schema::<man::Written>()),
         ("merge", schema::<Merge>()),
+        ("modes", schema::<ModesReport>()),
         ("reference", schema::<Reference>()),
         ("report", schema::<report::Written>()),
         ("reproduce", schema::<reproduce::Reproduced>()),

@@ -33,6 +33,7 @@ mod laws;
 mod layers;
 mod matrices;
 mod measured_inputs;
+mod modes;
 mod named_shares;
 mod openturns;
 mod overwriting;

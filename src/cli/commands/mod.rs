@@ -25,6 +25,7 @@ macro_rules! commands {
 
 commands! {
     Run: run,
+    Modes: modes,
     Build: build,
     Design: design,
     Ingest: ingest,

@@ -163,8 +163,12 @@ impl Center {
 
 /// Of a conjugate pair that with Im λ > 0 first, of two real eigenvalues the larger.
 fn first_and_second(one: Complex<f64>, other: Complex<f64>) -> [Complex<f64>; 2] {
-    let is_first = if one == other.conj() && one.im != 0.0 { one.im > 0.0 } else { one.re >= other.re };
-    if is_first { [one, other] } else { [other, one] }
+    if is_first(one, other) { [one, other] } else { [other, one] }
+}
+
+/// Whether the first of two eigenvalues of a mode is its first.
+pub(super) fn is_first(one: Complex<f64>, other: Complex<f64>) -> bool {
+    if one == other.conj() && one.im != 0.0 { one.im > 0.0 } else { one.re >= other.re }
 }
 
 fn is_as_large(spectra: [&Spectrum; 2]) -> bool {

@@ -4,7 +4,7 @@ use super::printed_digits::printed_errors;
 use super::solution::without_smallest;
 use crate::numerics::accuracy::Accuracy;
 use nalgebra::Complex;
-use pcc_evaluate::components::{Margin, Top, beyond_rounding};
+use pcc_evaluate::components::{Margin, Top, Verdict, beyond_rounding};
 use thiserror::Error;
 
 /// Eigenvalues with |λ| at most this share of max |λ| are rigid-body motion. Fourfold zero eigenvalues come out of the
@@ -310,6 +310,13 @@ impl Spectrum {
     /// The accuracy of every one of [`Spectrum::eigenvalues`].
     pub fn accuracies(&self) -> &[Accuracy] {
         &self.accuracies
+    }
+
+    /// What the eigenvalue at a position says of stability.
+    pub fn verdict_at(&self, position: usize) -> Verdict {
+        let lambda = self.eigenvalues[position];
+        let error = error_of_excess(self.margin, &self.accuracies[position]);
+        Verdict::of(beyond_rounding(self.margin.excess(lambda), error), lambda.im)
     }
 
     /// Whether the accuracy of an eigenvalue was looked at, and is not just what no solver avoids.
