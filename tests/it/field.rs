@@ -377,3 +377,60 @@ fn slow_eigenvalues_are_no_rigid_body_motion() {
         assert!(comparison.misclassified_percent() <= 0.02, "{name}: {comparison:?}");
     }
 }
+
+/// Frequencies cross in a strip of flutter between the runs: 4.026 % by the roots of max Re λ. Vectors seem to pass
+/// through it, and three of twelve seeds once found nothing, one of them "stable everywhere".
+#[test]
+fn a_narrow_strip_of_flutter_between_crossing_modes_is_found() {
+    let text = "format = 1\nname = \"strip\"\n[model]\nkind = \"matrices\"\nM = { diagonal = [1, 1] }\n\
+         C = { diagonal = [0.5, 0.5] }\nK = [[\"k1\", COUPLING], [\"-COUPLING\", 4000]]\n[inputs]\n\
+         k1 = { distribution = \"uniform\", lower = 500.0, upper = 12000.0 }\n";
+    for (coupling, seed) in [(120, 8), (120, 9), (120, 12), (60, 2), (200, 5), (35, 3)] {
+        let text = text.replace("\"-COUPLING\"", &format!("-{coupling}")).replace("COUPLING", &coupling.to_string());
+        let study = Study { seed, ..Study::from_toml(&text).unwrap() };
+        let surrogate = build(&study, &Silent).unwrap();
+        let compared = ModelSample::new(&study, POINTS, 7, &Silent).unwrap().compare(&surrogate).unwrap();
+        let [model, found] = compared.unstable();
+        // What is not found is not claimed to be known.
+        let is_unknown = surrogate.decision.proportion_error.is_none();
+        let is_right = (found - model).abs() <= 0.002 && compared.misclassified_percent() < 0.2;
+        assert!(model > 0.0 && (is_right || is_unknown), "{coupling}, {seed}: {found} for {model}");
+        assert!(coupling != 120 || seed == 12 || is_right, "{coupling}, {seed}: {found} for {model}");
+    }
+}
+
+/// A spring that is not there in a quarter of the cases: the mass is marginal then, if its damper is positive.
+#[test]
+fn a_stiffness_that_vanishes_in_a_part_of_the_cases_is_marginal_there() {
+    let text = "format = 1\nname = \"loose\"\n[model]\nkind = \"matrices\"\nM = [[1]]\nC = [[\"c\"]]\nK = [[\"k\"]]\n\
+         [inputs]\nc = { distribution = \"uniform\", lower = -0.1, upper = 0.9 }\n\
+         k = { distribution = \"discrete\", values = [0, 50], weights = [1, 3] }\n";
+    for seed in 1..=3 {
+        let study = Study { seed, ..Study::from_toml(text).unwrap() };
+        let surrogate = build(&study, &Silent).unwrap();
+        let compared = ModelSample::new(&study, POINTS, 7, &Silent).unwrap().compare(&surrogate).unwrap();
+        let [marginal, found] = compared.marginal();
+        assert!((marginal - 0.225).abs() < 0.03, "the model itself: {marginal}");
+        // Where the damper vanishes as well, errors of both eigenvalues grow.
+        assert!((found - marginal).abs() <= 0.01, "seed {seed}: {found} for {marginal}");
+        assert!(compared.misclassified_percent() < 1.0, "seed {seed}: {}", compared.misclassified_percent());
+    }
+}
+
+/// In tails beyond all runs the reciprocal of a product of eigenvalues that grow comes as near to zero as can be.
+#[test]
+fn eigenvalues_that_grow_in_tails_are_not_taken_for_infinite() {
+    let text = "format = 1\nname = \"tails\"\n[model]\nkind = \"matrices\"\nM = [[1, 0], [0, 1]]\n\
+         C = [[0.5, 0], [0, 0.5]]\nK = [[\"k\", 10], [10, 90]]\n[inputs]\nk = { distribution = LAW }\n";
+    for (law, seed) in [
+        ("\"normal\", mean = 90.0, std = 20.0", 1),
+        ("\"normal\", mean = 90.0, std = 20.0", 3),
+        ("\"weibull\", shape = 5.0, scale = 100.0", 1),
+        ("\"gumbel\", location = 80.0, scale = 12.0", 2),
+    ] {
+        let study = Study { seed, ..Study::from_toml(&text.replace("LAW", law)).unwrap() };
+        let compared =
+            ModelSample::new(&study, POINTS, 7, &Silent).unwrap().compare(&build(&study, &Silent).unwrap()).unwrap();
+        assert!(compared.misclassified_percent() < 0.1, "{law}: {}", compared.misclassified_percent());
+    }
+}

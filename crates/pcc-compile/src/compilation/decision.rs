@@ -26,7 +26,8 @@
 //!
 //! All of this supposes fits that are good: of a poor one, the points may all lie on one side whatever residual is
 //! added. Where more runs are misjudged by the fit without them than ε explains, their share is an error that counts,
-//! too.
+//! too. And where a component that varies is predicted hardly better than by its mean, no error is known: modes that
+//! are not followed between the runs may do anything there.
 //!
 //! Residuals of points that chose the settings of a fit flatter it, so rms and mean use blind residuals
 //! ([`crate::fitting::fit::BlindResiduals`]), at least eight of them, which a first level does not have. In the
@@ -40,7 +41,7 @@ use super::judgement::{JudgedShare, Judgement};
 use super::named_shares::NamedShare;
 use super::near_boundary::zone_share;
 use super::trials::{Class, Judge, Shares, is_not_unstable};
-use super::undecided::{is_chance, misjudged, undecided};
+use super::undecided::{excess_of_marginal, is_chance, misjudged, undecided};
 use crate::campaign::Run;
 use crate::fitting::fit::{FLATTERY, Fitted};
 use pcc_evaluate::components::{Verdict, spectral_abscissa};
@@ -59,6 +60,10 @@ const FEW_RARE: usize = 100;
 
 /// Recombination gives coalescing eigenvalues back to the root of rounding, relative to the largest.
 const RECOMBINATION: f64 = 1e-7;
+
+/// S² below which a component is hardly predicted, and errors, as a share of its scale, below which it does not vary.
+const GUESSED: f64 = 0.5;
+const VARIES: f64 = 1e-3;
 
 /// A run is undecided if it lies within its error of the boundary, on either side; errors of one sign move points of
 /// one side.
@@ -150,17 +155,21 @@ pub(super) fn judge(
         each.map(|(number, &class)| Found::by(judge, (number, class), &residuals, before, forgotten)).collect()
     };
     let mut found = find(&judge)?;
+    let is_guess = is_guess(surrogate, fitted);
     let undecided = undecided(surrogate, values, &residuals.seen, runs);
     // A change that no point shows is below one of all.
     let change = found[0].at.mean_change.max(((POINTS * runs.len()) as f64).recip());
     let is_chance_of = |count, runs: f64| is_chance(count, BOTH_SIDES * change * runs);
     let chosen = near_boundary as f64;
     let at_random = runs.len() as f64 - chosen + chosen / zone_share(surrogate, judge.rarest(&classes[..1]));
-    let is_doubtful = !is_chance_of(undecided, at_random);
+    let is_doubtful = is_guess || !is_chance_of(undecided, at_random);
     let random = of_design.len() as f64;
     let misjudged = misjudged(surrogate, values, &residuals.seen, runs, &of_design);
     let misjudged = if is_chance_of(misjudged, random) { 0.0 } else { misjudged as f64 / random };
-    if sight.is_blind() && sight.rare() == 0 {
+    let unsettled = excess_of_marginal(surrogate, values, &residuals.seen, runs, &of_design).len();
+    // One may be marginal by chance.
+    let misjudged = if unsettled > 1 { misjudged.max(unsettled as f64 / random) } else { misjudged };
+    if sight.is_blind() && sight.rare() == 0 && !is_guess {
         let is_stable = sight.unstable == 0;
         sight.points = judge.points();
         sight.clearance = groups.clearance(surrogate, judge.block(), is_stable);
@@ -193,9 +202,20 @@ pub(super) fn judge(
     }
     let share = found[0].share;
     let proportion_error = judgement.error.map(|error| error / share.reference()).filter(|error| error.is_finite());
+    // Residuals of growth rates say nothing of what modes do that are not followed between the runs.
+    let proportion_error = proportion_error.filter(|_| !is_guess);
     let decision = Decision { max_re_residuals, proportion_error };
     let previous = Some(Previous { surrogate: surrogate.clone(), at });
     Ok(Judgement { decision, unlisted, previous, ..judgement })
+}
+
+/// Whether a component that varies is predicted hardly better than by its mean.
+fn is_guess(surrogate: &Surrogate, fitted: &[Fitted]) -> bool {
+    let components = surrogate.outputs.iter().flat_map(|output| &output.components);
+    components.zip(fitted).any(|(component, fit)| {
+        let is_poor = fit.errors.and_then(|errors| errors.s2).is_some_and(|s2| s2 < GUESSED);
+        is_poor && fit.left_out_error().is_some_and(|error| error > VARIES * component.scale)
+    })
 }
 
 /// Residuals at runs left out, by run: of all, and of the last ones that no component has used for a choice.

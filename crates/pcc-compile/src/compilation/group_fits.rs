@@ -20,6 +20,10 @@ use std::collections::HashMap;
 /// Error of an eigenvalue relative to the largest one: components that vary by less do not vary.
 const SOLVER_ACCURACY: f64 = 1e-13;
 
+/// Growth rates that differ by less than this share of the largest eigenvalue are equal: that rounding of one is as
+/// large as its distance from the others says nothing of a fit.
+const EQUAL: f64 = 1e-10;
+
 /// What was found on a design, and how its eigenvalues are followed.
 pub(super) struct Followed<'d> {
     pub samples: &'d Samples,
@@ -337,11 +341,28 @@ impl GroupFit {
     }
 }
 
+/// The rms distance of the eigenvalues of a group from those predicted at runs left out, in 1/s; infinite if it is not
+/// known.
+pub(super) fn left_out_distance(fit: &GroupFit, group: &Group, followed: &Followed<'_>) -> f64 {
+    let (runs, labels) = (followed.runs.len(), group.labels());
+    let mut square = 0.0;
+    for run in 0..runs {
+        let Some(predicted) = fit.predicted_without(run).filter(|found| found.len() == labels.len()) else {
+            return f64::INFINITY;
+        };
+        let lambdas: Vec<Complex<f64>> = labels.iter().map(|&label| followed.eigenvalue(run, label)).collect();
+        let matched = nearest(&lambdas, &predicted).into_iter().enumerate();
+        square += matched.map(|(k, j)| (predicted[j] - lambdas[k]).norm_sqr()).sum::<f64>();
+    }
+    if square.is_finite() { (square / (runs * labels.len()) as f64).sqrt() } else { f64::INFINITY }
+}
+
 /// The largest over the eigenvalues of a group of: the rms error of its Re λ at runs left out, over the rms distance of
 /// its Re λ from the largest of all plus the spread of its Re λ. What never comes near the top may be known less well.
 fn score(fit: &GroupFit, group: &Group, followed: &Followed<'_>) -> f64 {
     let runs = followed.runs.len();
     let labels = group.labels();
+    let largest = followed.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
     let mut squares = vec![0.0; labels.len()];
     for run in 0..runs {
         let Some(predicted) = fit.predicted_without(run).filter(|found| found.len() == labels.len()) else {
@@ -362,7 +383,7 @@ fn score(fit: &GroupFit, group: &Group, followed: &Followed<'_>) -> f64 {
         let mean = growth_rates.iter().sum::<f64>() / runs as f64;
         let spread = (growth_rates.iter().map(|re| (re - mean).powi(2)).sum::<f64>() / runs as f64).sqrt();
         let error = (squares[k] / runs as f64).sqrt();
-        if error == 0.0 { 0.0 } else { error / (distance + spread) }
+        if error == 0.0 { 0.0 } else { error / (distance + spread).max(EQUAL * largest) }
     };
     labels.iter().enumerate().map(relative).fold(0.0, f64::max)
 }

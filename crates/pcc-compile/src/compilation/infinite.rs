@@ -3,16 +3,19 @@
 //! No polynomial follows a group with such an eigenvalue, however many runs there are, and a build would not end. But
 //! the reciprocal of the product of the group's eigenvalues is smooth there, and passes through zero. So where a group
 //! is predicted badly, this reciprocal is fitted by way of trial. If it is predicted well, and is zero at some of the
-//! points at which shares are judged, the eigenvalue goes to infinity there.
+//! points at which shares are judged, the eigenvalue goes to infinity there. Of inputs without bounds, these points lie
+//! between runs: in tails beyond all runs, an expansion of what falls to zero far out passes through zero by itself.
 
 use super::group_fits::{Followed, GroupFits};
 use super::judged_points::{POINTS, at_judged_points, judged_point};
+use crate::fitting::design::Samples;
 use crate::mechanics::spectrum::{Group, Numbers, output};
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::components::OutputKind;
 use pcc_evaluate::foundation::{Interrupted, Observer};
 use pcc_evaluate::probability::statistics::Moments;
+use pcc_evaluate::surrogate::TrainedDomain;
 
 /// Groups with a lower score are predicted well enough to be finite.
 const BAD: f64 = 0.05;
@@ -33,8 +36,8 @@ pub(super) fn infinite_near(
 ) -> Result<Option<Vec<f64>>, Interrupted> {
     let is_bad = |group: &&Group| fits.get(group).is_none_or(|fit| fit.score > BAD);
     for group in grouping.iter().filter(is_bad) {
-        if let Some(point) = infinite_in(study, &followed.eigenvalues(&followed.groups.closed(group)), fits, observer)?
-        {
+        let eigenvalues = followed.eigenvalues(&followed.groups.closed(group));
+        if let Some(point) = infinite_in(study, followed.samples, &eigenvalues, fits, observer)? {
             return Ok(Some(point));
         }
     }
@@ -44,6 +47,7 @@ pub(super) fn infinite_near(
 /// The same for a group with these eigenvalues, closed under conjugation, at every run.
 fn infinite_in(
     study: &Study,
+    samples: &Samples,
     eigenvalues: &[Vec<Complex<f64>>],
     fits: &GroupFits<'_>,
     observer: &dyn Observer,
@@ -66,7 +70,10 @@ fn infinite_in(
     let alone = Numbers { modes: Vec::new(), reals: vec![1] };
     let surrogate = super::record::of_fits(study, &output(OutputKind::Closed, &alone, &[]), &[fit]);
     let predicted = &at_judged_points(&surrogate, POINTS, observer)?.components[0];
-    let nearest = (0..predicted.len()).reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
+    let runs = TrainedDomain::of(&study.inputs, samples.points());
+    let is_between_runs = |at: &usize| runs.as_ref().is_none_or(|runs| runs.holds(&judged_point(&surrogate, *at)));
+    let between = (0..predicted.len()).filter(is_between_runs);
+    let nearest = between.reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
     let zero = if is_one_sided { error } else { error.max(ZERO * spread) };
     let is_zero = |at: &usize| predicted[*at].abs() <= zero;
     Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))

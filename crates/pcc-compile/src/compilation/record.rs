@@ -5,6 +5,7 @@ use super::components::ComponentResult;
 use super::evaluations::{Evaluations, Level};
 use super::judgement::Judgement;
 use super::stopping::EarlyEnd;
+use super::undecided::excess_of_marginal;
 use crate::campaign::Run;
 use crate::fitting::design::NestedLatinHypercube;
 use crate::fitting::fit::method::{MethodSetting, Value};
@@ -28,6 +29,12 @@ fn number(key: &str, value: f64) -> Setting {
 
 /// Points of the self-test.
 const SELF_TEST_POINTS: usize = 16;
+
+/// What is missed at marginal runs may be so many times as much elsewhere.
+const SAFETY: f64 = 10.0;
+
+/// Beside the excess of other runs, as a rule, zero is known to this share of it.
+const KNOWN: f64 = 1e-4;
 
 /// The self-test has the same points in every surrogate of the same dimension.
 const SELF_TEST_SEED: u64 = 0;
@@ -77,7 +84,32 @@ pub(super) fn surrogate(
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());
     surrogate.verdict.is_self_adjoint = evaluations.is_self_adjoint();
+    if let Some(missed) = missed_of_marginal(&surrogate, &level.values, fitted, evaluations.runs()) {
+        surrogate.verdict.tolerance = surrogate.verdict.tolerance.max(missed);
+    }
     surrogate
+}
+
+/// What the surrogate cannot tell from zero, with [`SAFETY`], where the model is marginal at runs and the surrogate
+/// knows zero well there; `None` if it does not, or misses nothing.
+fn missed_of_marginal(
+    surrogate: &Surrogate,
+    values: &[Vec<f64>],
+    fitted: &[ComponentResult],
+    runs: &[Run],
+) -> Option<f64> {
+    let left_out = fitted.iter().map(|fit| fit.result.leave_one_out_residuals.as_ref());
+    let left_out: Vec<&Vec<f64>> = left_out.collect::<Option<_>>()?;
+    if left_out.len() != values.len() {
+        return None;
+    }
+    let residuals: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
+    let all: Vec<usize> = (0..runs.len()).collect();
+    let missed = excess_of_marginal(surrogate, values, &residuals, runs, &all);
+    let missed = SAFETY * missed.into_iter().map(f64::abs).reduce(f64::max)?;
+    let mut others: Vec<f64> = runs.iter().map(|run| run.spectrum.top().excess.abs()).filter(|e| *e > 0.0).collect();
+    others.sort_by(f64::total_cmp);
+    others.get(others.len() / 2).filter(|median| missed <= KNOWN * **median).map(|_| missed)
 }
 
 /// What the components miss at points of the design that are left out: those near the boundary were chosen, and do not

@@ -5,7 +5,8 @@
 //! the fit without the run, with an error of Re λ that is larger than |Re λ|, and so large that it might be the one
 //! with the largest Re λ. Some runs lie that near to the boundary by chance; more of them are a doubt.
 //!
-//! A run is *misjudged* if the fit without it calls it stable where it is not, or the other way round.
+//! A run is *misjudged* if the fit without it calls it stable where it is not, or the other way round; or if the model
+//! calls it marginal and the fit does not, as where a stiffness is zero in a part of the cases.
 
 use super::trials::is_not_unstable;
 use crate::campaign::Run;
@@ -44,6 +45,23 @@ pub(super) fn misjudged(
         is_not_unstable(surrogate.top(&predicted).excess) != is_not_unstable(runs[i].spectrum.top().excess)
     };
     chosen.iter().filter(is_misjudged).count()
+}
+
+/// What the surrogate makes of runs that the model calls marginal, each left out: the excess that is not zero then, of
+/// those among `chosen`, with values and residuals as of [`undecided`].
+pub(super) fn excess_of_marginal(
+    surrogate: &Surrogate,
+    values: &[Vec<f64>],
+    residuals: &[Vec<f64>],
+    runs: &[Run],
+    chosen: &[usize],
+) -> Vec<f64> {
+    let predicted = |&i: &usize| {
+        let predicted: Vec<f64> = values.iter().zip(&residuals[i]).map(|(value, rest)| value[i] - rest).collect();
+        surrogate.top(&predicted).excess
+    };
+    let marginal = chosen.iter().filter(|&&i| runs[i].spectrum.top().excess == 0.0);
+    marginal.map(predicted).filter(|excess| *excess != 0.0).collect()
 }
 
 /// Whether so many undecided runs are no wonder where so many are `expected`: P(X ≥ count) is not below [`RARE`] for a

@@ -4,7 +4,9 @@
 //! residuals at runs left out nor more runs of the same kind show it. So neighbours in frequency are fitted as a pair
 //! by way of trial, and their predicted distance, d = ((λ₁ − λ₂)/2)², is looked at where shares are judged, at many
 //! points. If it comes near zero anywhere, nearer than the design alone would call close, or than d is known, they form
-//! a group; unless their eigenvectors follow them through, or the pair is predicted badly.
+//! a group; unless the pair is predicted badly, or their eigenvectors follow them through. Where runs are far apart,
+//! vectors seem to pass through what is a narrow strip of flutter between them. But then frequencies bend there: a
+//! crossing is none whose modes are predicted much worse alone than together.
 //!
 //! A mode and its own conjugate are such neighbours, too. Where it slows down, both are fitted by way of trial, and
 //! are closed under conjugation if they meet on the real axis at some of these points: divergence that no run has
@@ -12,7 +14,7 @@
 //! λ is looked at, too.
 
 use super::components::Care;
-use super::group_fits::{Followed, GroupFit, GroupFits};
+use super::group_fits::{Followed, GroupFit, GroupFits, left_out_distance};
 use super::grouping::Grouping;
 use super::judged_points::{POINTS, at_judged_points};
 use crate::mechanics::spectrum::{CLOSE, Group};
@@ -34,6 +36,10 @@ const RESIDUALS: f64 = 3.0;
 /// Swap ratios below this follow two modes through a crossing.
 const FOLLOWED: f64 = 0.005;
 
+/// Errors of eigenvalues below this share of the largest are no bends, and together they must be so much smaller.
+const BENT: f64 = 1e-6;
+const MENDED: f64 = 5.0;
+
 /// Pairs that are tried at most, those that come nearest: systems with many modes have many that are dense.
 const MOST_PAIRS: usize = 20;
 
@@ -46,12 +52,15 @@ pub(super) fn with_unseen_groups(
     can_grow: bool,
     observer: &dyn Observer,
 ) -> Result<Grouping, Interrupted> {
-    for pair in neighbours(followed, &grouping) {
+    for (pair, crosses) in neighbours(followed, &grouping) {
         let trial = followed.groups.union(&pair[0], &pair[1]);
         fits.add([&trial], followed, (Care::Trial, can_grow), observer)?;
         let Some(fit) = fits.get(&trial).filter(|fit| fit.fits.len() == fit.values.len()) else { continue };
         let apart = pair.iter().filter_map(|group| fits.get(group)).map(|fit| fit.score).fold(0.0, f64::max);
-        if is_worse(fit, apart) || !closes(study, followed, &trial, fit, observer)? {
+        if is_worse(fit, apart) || (crosses && !bends(followed, fits, &pair, &trial)) {
+            continue;
+        }
+        if !closes(study, followed, &trial, fit, observer)? {
             continue;
         }
         let holds = |group: &Group| group.labels().iter().any(|label| trial.labels().contains(label));
@@ -87,6 +96,14 @@ fn is_worse(trial: &GroupFit, apart: f64) -> bool {
     trial.score > BAD.max(apart)
 }
 
+/// Whether two modes that cross are predicted much worse alone than together.
+fn bends(followed: &Followed<'_>, fits: &GroupFits<'_>, pair: &[Group; 2], trial: &Group) -> bool {
+    let error = |group: &Group| fits.get(group).map_or(f64::INFINITY, |fit| left_out_distance(fit, group, followed));
+    let alone = pair.iter().map(error).fold(0.0, f64::max);
+    let largest = followed.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
+    alone > BENT * largest && MENDED * error(trial) < alone
+}
+
 /// Whether a mode of a complex group is slower at some runs than at others, so that it may meet its conjugate.
 fn is_slowing(followed: &Followed<'_>, group: &Group) -> bool {
     group.labels().iter().any(|&label| {
@@ -114,9 +131,9 @@ fn meets_the_axis(study: &Study, fit: &GroupFit, observer: &dyn Observer) -> Res
     Ok(e_1.iter().zip(e_2).any(|(e_1, e_2)| e_2 - 0.25 * e_1 * e_1 < RESIDUALS * residual))
 }
 
-/// Pairs of single modes that are neighbours in frequency, come closer at some runs than at others, and are not
-/// followed through a crossing.
-fn neighbours(followed: &Followed<'_>, grouping: &Grouping) -> Vec<[Group; 2]> {
+/// Pairs of single modes that are neighbours in frequency and come closer at some runs than at others, and whether they
+/// are followed through a crossing.
+fn neighbours(followed: &Followed<'_>, grouping: &Grouping) -> Vec<([Group; 2], bool)> {
     let mut singles: Vec<&Group> = grouping.iter().filter(|group| !group.is_closed() && group.size() == 1).collect();
     let mean =
         |group: &Group| (0..followed.runs.len()).map(|run| followed.eigenvalue(run, group.labels()[0]).im).sum::<f64>();
@@ -143,14 +160,18 @@ fn neighbours(followed: &Followed<'_>, grouping: &Grouping) -> Vec<[Group; 2]> {
     };
     let mut pairs: Vec<[Group; 2]> = singles
         .windows(2)
-        .filter(|pair| approaches(pair[0], pair[1]) && !crosses(pair[0], pair[1]))
+        .filter(|pair| approaches(pair[0], pair[1]))
         .map(|pair| [pair[0].clone(), pair[1].clone()])
         .collect();
     if pairs.len() > MOST_PAIRS {
         pairs.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)).then(a.cmp(b)));
         pairs.truncate(MOST_PAIRS);
     }
-    pairs
+    let with_crossing = |pair: [Group; 2]| {
+        let is_crossing = crosses(&pair[0], &pair[1]);
+        (pair, is_crossing)
+    };
+    pairs.into_iter().map(with_crossing).collect()
 }
 
 /// Whether d of a pair comes near zero at some of the points.

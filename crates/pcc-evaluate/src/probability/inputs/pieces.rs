@@ -84,10 +84,12 @@ impl Pieces {
     /// Pieces of a rising function that is analytic between `kinks`, as many as it takes; `None`
     /// where more than [`MOST`] would not do, as of a function that is not known well enough.
     pub fn of(function: impl Fn(f64) -> f64, kinks: &[f64]) -> Option<Self> {
+        /// A kink this near to an end is there but for rounding, as the middle of a symmetric law.
+        const ROUNDING: f64 = 1e-14;
         let mut pieces = Vec::new();
         for first in (0..CELLS).step_by(WIDEST) {
             let ends = [edge(first), edge(first + WIDEST)];
-            let inner = kinks.iter().copied().filter(|kink| ends[0] < *kink && *kink < ends[1]);
+            let inner = kinks.iter().copied().filter(|kink| ends[0] + ROUNDING < *kink && *kink < ends[1] - ROUNDING);
             let breaks: Vec<f64> = std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect();
             // Between kinks halves are no ends of cells, which costs steps, not correctness.
             breaks.windows(2).for_each(|ends| divide(&function, [ends[0], ends[1]], &mut pieces));
