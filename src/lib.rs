@@ -45,7 +45,8 @@ pub use error::Error;
 // Studies and models.
 pub use pcc_compile::mechanics::model::command::results_table::ResultRow;
 pub use pcc_compile::mechanics::model::{Concurrency, Linearization, Model, ModelAnswer, ModelError, SecondOrder};
-pub use pcc_compile::study::{Function, FunctionAnswers, ModelSettings, Study, StudyFileError};
+pub use pcc_compile::study::{DataOptions, Function, FunctionAnswers, ModelSettings, Study, StudyFileError};
+pub use pcc_compile::tables::Decimal;
 
 // From a study to a surrogate, and the model's word on it.
 pub use pcc_compile::ask_and_tell::{
@@ -53,7 +54,9 @@ pub use pcc_compile::ask_and_tell::{
 };
 pub use pcc_compile::campaign::journal::{Contents, Journal};
 pub use pcc_compile::campaign::{Books, Campaign, Failure, Ledger, Note, Recording, RunError};
-pub use pcc_compile::compilation::{BuildError, BuiltFile, build, build_to_file, build_with};
+pub use pcc_compile::compilation::{
+    BuildError, BuiltFile, GivenUse, Uncovered, Validation, build, build_to_file, build_with,
+};
 pub use pcc_compile::reference::{Comparison, ReferenceError, certify_with_model, check_problem, compare_with_model};
 
 // A surrogate and what it answers.

@@ -1,5 +1,6 @@
 //! Files that commands read.
 
+use super::shared_options::DataArguments;
 use anyhow::{Context as _, bail};
 use pcc_compile::study::Study;
 use pcc_evaluate::artifact::{self, Artifact};
@@ -10,6 +11,11 @@ use std::path::Path;
 
 pub(super) fn read_study(path: &Path) -> anyhow::Result<Study> {
     Ok(Study::read(path)?)
+}
+
+/// The same with runs that the command line gives.
+pub(super) fn read_study_with(path: &Path, data: &DataArguments) -> anyhow::Result<Study> {
+    Ok(Study::read_with(path, &data.to_options())?)
 }
 
 pub(super) fn read_surrogate(path: &Path) -> anyhow::Result<Artifact> {

@@ -2,6 +2,8 @@
 
 use clap::{Args, ValueEnum};
 use pcc_compile::campaign::Recording;
+use pcc_compile::study::{DataOptions, HOLDOUT, is_holdout};
+use pcc_compile::tables::{Decimal, separator};
 use std::path::PathBuf;
 
 /// Points that are given, instead of random ones.
@@ -54,6 +56,57 @@ impl RecordingOptions {
             is_off: self.no_journal,
         }
     }
+}
+
+/// Runs that have been made already.
+#[derive(Debug, Clone, Default, Args)]
+#[group(skip)]
+#[command(next_help_heading = "Runs that have been made already")]
+pub(super) struct DataArguments {
+    /// Table of runs at any points, in place of the study's model.data: one column per input, the eigenvalues as re_1,
+    /// im_1, re_2, im_2 and so on, perhaps their derivatives as d_re_1_d_INPUT; can be repeated to put tables together
+    #[arg(long, value_name = "RUNS.csv")]
+    pub data: Vec<PathBuf>,
+
+    /// What separates columns: comma, semicolon, tab, space, bar or the character [default: semicolons or tabs if the
+    /// first line has some, else commas]
+    #[arg(long, value_name = "CHAR", value_parser = delimiter)]
+    pub delimiter: Option<char>,
+
+    /// What numbers have for a decimal point [default: point]
+    #[arg(long, value_enum)]
+    pub decimal: Option<DecimalWord>,
+
+    /// Share of these runs that no fit sees, like 0.2; they validate the surrogate
+    #[arg(long, value_name = "SHARE", value_parser = holdout)]
+    pub holdout: Option<f64>,
+}
+
+/// What numbers have for a decimal point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DecimalWord {
+    /// 0.25
+    Point,
+    /// 0,25
+    Comma,
+}
+
+impl DataArguments {
+    pub fn to_options(&self) -> DataOptions {
+        let decimal = self.decimal.map(|word| match word {
+            DecimalWord::Point => Decimal::Point,
+            DecimalWord::Comma => Decimal::Comma,
+        });
+        DataOptions { files: self.data.clone(), delimiter: self.delimiter, decimal, holdout: self.holdout }
+    }
+}
+
+fn delimiter(text: &str) -> Result<char, String> {
+    separator(text).ok_or_else(|| "use comma, semicolon, tab, space or bar, or the character itself".to_owned())
+}
+
+fn holdout(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|&share| is_holdout(share)).ok_or_else(|| format!("use {HOLDOUT}"))
 }
 
 /// What becomes of model runs that fail, where surrogate and model are compared.

@@ -2,6 +2,7 @@
 
 use super::confidence::known_error;
 use super::fit::{FitReport, share_of_variance};
+use super::given::GivenReport;
 use super::layout::{Facts, width, write_verdict, write_warnings};
 use super::sight::Sight;
 use super::smallest_share::{SmallestShare, estimated_error};
@@ -53,6 +54,9 @@ pub struct BuildReport {
     pub components: Vec<FitReport>,
     /// What to know before trusting the surrogate.
     pub warnings: Vec<String>,
+    /// Runs that were given; absent if none were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub data: Option<GivenReport>,
     /// Wall-clock time.
     pub elapsed_seconds: f64,
     /// Where the runs come from.
@@ -113,6 +117,7 @@ impl BuildReport {
         };
         Self {
             rigid_body_modes: built.rigid_body_modes,
+            data: built.given.as_ref().map(GivenReport::new),
             ..Self::new(&built.surrogate, file, built.bytes, built.elapsed_seconds, runs)
         }
     }
@@ -136,6 +141,7 @@ impl BuildReport {
             estimated_error_percent: known_error(surrogate).map(|error| 100.0 * error),
             smallest_share: SmallestShare::of(surrogate),
             components: FitReport::of(surrogate),
+            data: None,
             elapsed_seconds,
         };
         report.verdict = report.verdict(Sight::of(surrogate), estimated_error(surrogate));
@@ -202,6 +208,9 @@ impl BuildReport {
             format!("{}{earlier}, {runs}, seed {}", count(self.direct_computations), self.seed),
             "",
         );
+        if let Some(data) = &self.data {
+            data.add_to(&mut facts);
+        }
         let worst = self.components.iter().filter(|fit| fit.s2.is_some()).min_by(|a, b| {
             let [a, b] = [a, b].map(|fit| fit.s2.unwrap_or(1.0));
             a.total_cmp(&b)

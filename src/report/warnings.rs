@@ -41,6 +41,7 @@ fn ended(reason: &str, surrogate: &Surrogate) -> String {
             "because fits take far longer than the runs of this model; set design.maximum to let it go on"
         }
         "largest-design" => "because design.maximum allows no more",
+        "data-exhausted" => "because no other runs were given; give more, or narrow the laws of the inputs",
         "interrupted" => "because it was stopped",
         other => other,
     };
@@ -119,6 +120,7 @@ impl FitReport {
     /// The same, and what is known of the proportion.
     pub fn warnings_of(surrogate: &Surrogate) -> Vec<String> {
         let mut warnings: Vec<String> = super::coverage::warning(surrogate).into_iter().collect();
+        warnings.extend(super::given::warnings(surrogate));
         warnings.extend(Self::warnings_by_method(surrogate, &Self::of(surrogate)));
         let setting = |key: &str| surrogate.training.settings.iter().find(|setting| setting.key == key);
         let asked = setting("proportion_tolerance");

@@ -22,6 +22,7 @@ mod extrapolation;
 mod field;
 mod full_expansions;
 mod functions;
+mod given_runs;
 mod golden_file;
 mod gradient_fits;
 mod help;

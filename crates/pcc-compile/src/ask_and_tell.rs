@@ -99,7 +99,11 @@ pub struct Told {
 ///
 /// [`AskError::Derivatives`].
 pub fn check(study: &Study) -> Result<(), AskError> {
-    if study.uses_derivatives() { Err(AskError::Derivatives) } else { Ok(()) }
+    // Those of given runs come with their table.
+    match study.uses_derivatives() && study.model.has_derivatives() {
+        true => Err(AskError::Derivatives),
+        false => Ok(()),
+    }
 }
 
 /// Steps the build of `study` as far as it goes on what `contents` has of its model. The model is not run.

@@ -9,6 +9,7 @@
 //! | [`numerics`] | eigenvalues, invariant subspaces, factorisations, minimisation |
 //! | [`mechanics`] | models and their spectra |
 //! | [`fitting`] | designs, regression, fits: mathematics that knows no study |
+//! | [`tables`] | runs of a model that somebody has made already |
 //! | [`study`] | a TOML file becomes a validated problem |
 //! | [`campaign`] | model runs: which are asked for, known, recorded |
 //! | [`compilation`] | the loop of the build, and its stopping rule |
@@ -25,3 +26,4 @@ pub mod mechanics;
 pub mod numerics;
 pub mod reference;
 pub mod study;
+pub mod tables;

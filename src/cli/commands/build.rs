@@ -1,8 +1,8 @@
 //! `pcc build`
 
-use crate::cli::inputs::read_study;
+use crate::cli::inputs::read_study_with;
 use crate::cli::overwrite::{Output, refuse_to_replace};
-use crate::cli::shared_options::{RecordingOptions, seed};
+use crate::cli::shared_options::{DataArguments, RecordingOptions, seed};
 use crate::cli::{Context, Ending};
 use crate::report::BuildReport;
 use clap::{Args, ValueEnum};
@@ -16,14 +16,17 @@ const EXAMPLES: &str = "\
 Examples:
   pcc build belt.toml                          writes belt.pcc
   pcc build belt.toml --resume                 goes on after whatever has stopped a build
-  pcc build belt.toml -o other.json --seed 2   another design, as JSON";
+  pcc build belt.toml -o other.json --seed 2   another design, as JSON
+  pcc build belt.toml --data runs.csv --holdout 0.2
+                                               of runs that have been made, a fifth of which validate it";
 
 /// Build a surrogate from a study
 ///
 /// Runs the model on a nested Latin hypercube design that grows until every component is fitted and the stability
 /// proportion is accurate enough, as far as the study asks for it, and writes index sets and coefficients. Full
-/// expansions (methods gpc and me-gpc) run it on a grid, or on a design whose size their degree fixes. The same study
-/// gives the same bytes on any number of threads.
+/// expansions (methods gpc and me-gpc) run it on a grid, or on a design whose size their degree fixes. Runs that have
+/// been made already come first (--data); a model of kind "table" has no others. The same study gives the same bytes on
+/// any number of threads.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct Options {
@@ -55,6 +58,9 @@ pub(in crate::cli) struct Options {
     pub show_study: bool,
 
     #[command(flatten)]
+    pub data: DataArguments,
+
+    #[command(flatten)]
     pub recording: RecordingOptions,
 }
 
@@ -67,7 +73,7 @@ pub(in crate::cli) enum FileFormat {
 }
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
-    let mut study = read_study(&options.study)?;
+    let mut study = read_study_with(&options.study, &options.data)?;
     study.seed = options.seed.unwrap_or(study.seed);
     if options.show_study {
         context.print(&ShownStudy { study: study.to_toml() })?;

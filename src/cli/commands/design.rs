@@ -1,6 +1,7 @@
 //! `pcc design`: the model runs that a build is waiting for.
 
-use crate::cli::inputs::read_study;
+use crate::cli::inputs::read_study_with;
+use crate::cli::shared_options::DataArguments;
 use crate::cli::overwrite::{Output, claim};
 use crate::cli::{Context, Ending, about};
 use crate::report::DesignReport;
@@ -18,7 +19,8 @@ use std::path::PathBuf;
 const EXAMPLES: &str = "\
 Examples:
   pcc design rig.toml --emit rows.csv                         the points that are needed next
-  pcc design rig.toml --emit rows.csv --journal old.journal   with answers from elsewhere";
+  pcc design rig.toml --emit rows.csv --journal old.journal   with answers from elsewhere
+  pcc design rig.toml --emit rows.csv --data runs.csv         beside runs that have been made already";
 
 /// Write the model runs that a build is waiting for as a table
 ///
@@ -38,10 +40,13 @@ pub(in crate::cli) struct Options {
     /// Journal of the answers [default: <name of the study>.journal in the current folder]
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub data: DataArguments,
 }
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
-    let study = read_study(&options.study)?;
+    let study = read_study_with(&options.study, &options.data)?;
     let source = options.study.display().to_string();
     let journal = options.journal.clone().unwrap_or_else(|| journal_here(&study));
     check(&study).with_context(|| source.clone())?;

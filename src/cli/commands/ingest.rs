@@ -1,6 +1,7 @@
 //! `pcc ingest`: answers that others computed.
 
-use crate::cli::inputs::read_study;
+use crate::cli::inputs::read_study_with;
+use crate::cli::shared_options::DataArguments;
 use crate::cli::{Context, Ending, about};
 use crate::report::IngestReport;
 use anyhow::{Context as _, anyhow, bail};
@@ -41,10 +42,13 @@ pub(in crate::cli) struct Options {
     /// Journal of the answers [default: <name of the study>.journal in the current folder]
     #[arg(long, value_name = "FILE")]
     pub journal: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub data: DataArguments,
 }
 
 pub(super) fn run(context: &Context, options: &Options) -> anyhow::Result<Ending> {
-    let study = read_study(&options.study)?;
+    let study = read_study_with(&options.study, &options.data)?;
     let source = options.study.display().to_string();
     check(&study).with_context(|| source.clone())?;
     let path = options.journal.clone().unwrap_or_else(|| journal_here(&study));

@@ -15,7 +15,14 @@ const ONLY_AFTER_FAILURES: [&str; 3] = ["unanswered_proportion", "bounds", "with
 
 /// Headings of the page, each with commands whose documents together have its fields.
 const COMMANDS: [(&str, &[&str]); 6] = [
-    ("build", &["build surrogates/clutch-r3.toml -o clutch.pcc", "build dependent.toml -o dependent.pcc"]),
+    (
+        "build",
+        &[
+            "build surrogates/clutch-r3.toml -o clutch.pcc",
+            "build dependent.toml -o dependent.pcc",
+            "build table.toml --data runs.csv --holdout 0.2 -o table.pcc",
+        ],
+    ),
     (
         "eval and reference",
         &[
@@ -93,7 +100,10 @@ fn listed_fields_are_printed() {
     std::fs::create_dir(folder.path().join("surrogates")).unwrap();
     let study = "surrogates/clutch-r3.toml";
     std::fs::copy(repository(study), folder.path().join(study)).unwrap();
-    for (name, content) in [("table.toml", TABLE), ("normal.toml", NORMAL), ("points.csv", "k_p\n16e6\n")] {
+    let run = |i: i32| format!("{i},{},30,-2,50\n", f64::from(i) - 6.5);
+    let runs = "speed,re_1,im_1,re_2,im_2\n".to_owned() + &(1..=12).map(run).collect::<String>();
+    let files = [("table.toml", TABLE), ("normal.toml", NORMAL), ("points.csv", "k_p\n16e6\n"), ("runs.csv", &runs)];
+    for (name, content) in files {
         std::fs::write(folder.path().join(name), content).unwrap();
     }
     let dependent = std::fs::read_to_string(repository(study)).unwrap() + DEPENDENCE;

@@ -1,7 +1,7 @@
 //! The books of model runs: what is known already, what is recorded, and which points were asked for.
 
 use crate::campaign::journal::{Contents, HASH_BYTES, Journal, JournalError, Record, RunOutcome};
-use crate::study::Study;
+use crate::study::{ModelSettings, Study};
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -16,6 +16,8 @@ enum Unknown {
     Run,
     /// Nothing: the points are written down for others to run.
     Ask,
+    /// Nothing: the build makes do with what it has.
+    Settle,
 }
 
 /// A point the design asked for.
@@ -66,7 +68,9 @@ struct Pages {
 }
 
 impl Ledger {
-    fn new(model: [u8; HASH_BYTES], journal: Option<Journal>) -> Self {
+    /// A model that is nothing but the runs that are given cannot be run: builds make do with what there is.
+    fn new(study: &Study, journal: Option<Journal>) -> Self {
+        let is_given = study.data.is_some() && matches!(study.model, ModelSettings::Table(_));
         let pages = Pages {
             asked: Vec::new(),
             failures: Vec::new(),
@@ -78,9 +82,9 @@ impl Ledger {
             last_sync: Instant::now(),
         };
         Self {
-            model,
+            model: study.model_hash(),
             known: HashMap::new(),
-            unknown: Unknown::Run,
+            unknown: if is_given { Unknown::Settle } else { Unknown::Run },
             journal,
             is_optional: false,
             retries_failures: false,
@@ -90,12 +94,12 @@ impl Ledger {
 
     /// Nothing is known and nothing recorded.
     pub fn blank(study: &Study) -> Self {
-        Self::new(study.model_hash(), None)
+        Self::new(study, None)
     }
 
     /// Every run is recorded in `journal`.
     pub fn recording(study: &Study, journal: Journal) -> Self {
-        Self::new(study.model_hash(), Some(journal))
+        Self::new(study, Some(journal))
     }
 
     /// What `contents` has of this model is known, and need not be run again. Answers with derivatives stand above
@@ -143,6 +147,11 @@ impl Ledger {
     pub fn asking(mut self) -> Self {
         self.unknown = Unknown::Ask;
         self
+    }
+
+    /// Whether a build gives the best that it has, where it needs more than what is known.
+    pub fn settles(&self) -> bool {
+        self.unknown == Unknown::Settle
     }
 
     /// What is known of a point.

@@ -3,7 +3,7 @@
 use super::ledger::{DesignPoint, bits};
 use crate::campaign::journal::{HASH_BYTES, Record, RunOutcome};
 use crate::mechanics::model::command::results_table::ResultRow;
-use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError, Target};
+use crate::mechanics::spectrum::{Computation, Spectrum, SpectrumError, Target, largest_difference};
 use crate::study::Study;
 use nalgebra::Complex;
 use pcc_evaluate::probability::inputs::{Germ, Marginal};
@@ -143,7 +143,7 @@ pub fn match_answers(
         let before = outcomes.get(&i).cloned().or_else(|| known(point));
         match (&before, &outcome) {
             (Some(RunOutcome::Answered(before)), RunOutcome::Answered(now)) => {
-                let (difference, scale) = difference(&before.eigenvalues, &now.eigenvalues);
+                let (difference, scale) = largest_difference(&before.eigenvalues, &now.eigenvalues);
                 match (difference > ANSWER_TOLERANCE * scale, replaces) {
                     (false, _) => matched.repeated += 1,
                     (true, false) => problems.push(RowProblem::Contradiction { line, run, difference }),
@@ -243,19 +243,6 @@ fn width(law: &Marginal, value: f64) -> f64 {
             2.0 * (upper - lower).max((value - median).abs())
         }
     }
-}
-
-/// The largest difference between eigenvalues, whatever their order, and the largest |λ|.
-fn difference(a: &[Complex<f64>], b: &[Complex<f64>]) -> (f64, f64) {
-    let scale = a.iter().chain(b).map(|lambda| lambda.norm()).fold(0.0, f64::max);
-    let mut left: Vec<Complex<f64>> = b.to_vec();
-    let mut largest = if a.len() == b.len() { 0.0 } else { f64::INFINITY };
-    for lambda in a {
-        let nearest = (0..left.len()).min_by(|&i, &k| (left[i] - lambda).norm().total_cmp(&(left[k] - lambda).norm()));
-        let Some(nearest) = nearest else { break };
-        largest = (left.swap_remove(nearest) - lambda).norm().max(largest);
-    }
-    (largest, scale)
 }
 
 #[cfg(test)]

@@ -222,10 +222,13 @@ impl Books {
     /// Without a `default`, runs are recorded only if the user names a journal.
     fn open(study: &Study, recording: &Recording, default: Option<PathBuf>) -> Result<Self, JournalError> {
         let is_table = matches!(study.model, ModelSettings::Table(_));
+        // Given runs are enough; there may be answers to further points.
+        let default = default.filter(|path| !is_table || study.data.is_none() || path.exists());
         // Without a journal there is nothing to resume from, and nothing that answers in tables.
-        let wants_journal = recording.resumes || is_table;
+        let wants_journal = recording.resumes || (is_table && study.data.is_none());
         let chosen = recording.journal.clone().or(default).or_else(|| wants_journal.then(|| journal_here(study)));
         let Some(path) = chosen.filter(|_| !recording.is_off) else { return Ok(Self::without_journal(study)) };
+        let wants_journal = recording.resumes || is_table;
         let is_unasked = recording.journal.is_none() && !wants_journal && !study.model.is_external();
         let (journal, contents) = match Journal::open(&path) {
             // Builds of pcc's own models may run beside each other, as long as nobody asked for a journal.
@@ -245,7 +248,7 @@ impl Books {
         if wants_journal {
             ledger = ledger.knowing(&contents);
         }
-        if is_table {
+        if is_table && study.data.is_none() {
             ledger = ledger.asking();
         }
         Ok(Self { ledger, notes, journal: Some(path), is_disposable })

@@ -56,6 +56,11 @@ impl Structure {
         *self.is_self_adjoint.get_or_init(|| (0..STRUCTURE_POINTS).all(|index| at_point(system(study, model, index))))
     }
 
+    /// How many eigenvalues the structure of a model makes zero; no limit, if it is not known.
+    pub fn zeros(&self, study: &Study, model: &dyn Model) -> usize {
+        *self.zeros.get_or_init(|| zeros(study, model))
+    }
+
     /// How many of these eigenvalues of a model are rigid-body motion: of those that are negligible beside the largest
     /// as many as the structure of the model makes zero, since the others are slow; or what the study says.
     ///
@@ -70,7 +75,7 @@ impl Structure {
     ) -> Result<usize, SpectrumError> {
         let negligible = Spectrum::negligible(eigenvalues);
         // Most models have none, and need not be looked at.
-        let zeros = || *self.zeros.get_or_init(|| zeros(study, model));
+        let zeros = || self.zeros(study, model);
         let Some(stated) = study.spectrum.rigid_body_modes else {
             return Ok(if negligible > 0 { negligible.min(zeros()) } else { 0 });
         };

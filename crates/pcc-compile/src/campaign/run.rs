@@ -1,5 +1,7 @@
 //! Direct computations at points of the input space, with errors that name the point.
 
+mod given_answers;
+
 use super::ledger::{Campaign, Ledger};
 use super::rigid_body_motion::Structure;
 use crate::campaign::journal::{JournalError, RunOutcome};
@@ -99,6 +101,8 @@ pub struct Runner<'a> {
     ledger: Option<&'a Ledger>,
     model: Box<dyn Model>,
     with_derivatives: bool,
+    /// The same of runs that are given, whether the model has derivatives or not.
+    wants_derivatives: bool,
     ranks_modes: bool,
     /// The first point, and how many modes oscillate there, or how many eigenvalues there are.
     first: Option<(Vec<f64>, usize)>,
@@ -131,6 +135,7 @@ impl<'a> Runner<'a> {
             ledger,
             model,
             with_derivatives: false,
+            wants_derivatives: false,
             ranks_modes: true,
             first: None,
             modes: Vec::new(),
@@ -146,7 +151,7 @@ impl<'a> Runner<'a> {
     /// Asks the model for derivatives, too, if it has them.
     #[must_use]
     pub fn with_derivatives(self, wanted: bool) -> Self {
-        Self { with_derivatives: wanted && self.model.has_derivatives(), ..self }
+        Self { with_derivatives: wanted && self.model.has_derivatives(), wants_derivatives: wanted, ..self }
     }
 
     /// Leaves it open which eigenvalue is which mode: any number of them may oscillate.

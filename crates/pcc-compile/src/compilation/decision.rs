@@ -117,8 +117,10 @@ pub(super) struct Judged<'a> {
     /// Of its components at its runs.
     pub values: &'a [Vec<f64>],
     pub runs: &'a [Run],
-    /// Which runs are those of the design: a share of others is none of cases.
+    /// Which runs are those of the design, or were given: a share of others is none of cases.
     pub of_design: Vec<usize>,
+    /// The masses of the runs (`mass.rs`), if some were given.
+    pub masses: Option<Vec<f64>>,
     /// How many runs were chosen near the boundary.
     pub near_boundary: usize,
 }
@@ -131,14 +133,15 @@ pub(super) fn judge(
     purpose: Purpose<'_>,
     observer: &dyn Observer,
 ) -> Result<Judgement, Interrupted> {
-    let Judged { surrogate, fitted, values, runs, of_design, near_boundary } = level;
+    let Judged { surrogate, fitted, values, runs, of_design, masses, near_boundary } = level;
+    let masses = masses.as_deref();
     let left_out: Option<Vec<&Vec<f64>>> = fitted.iter().map(|fit| fit.leave_one_out_residuals.as_ref()).collect();
     let Some(left_out) = left_out else {
         return Ok(Judgement::default());
     };
     let seen: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
     let blind = blind_residuals(fitted, runs.len());
-    let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, runs);
+    let max_re_residuals = residual_quantiles(surrogate, &honest_residuals(&seen, &blind), values, (runs, masses));
     let unlisted = (0..runs.len()).filter(|&i| contradicts(surrogate, values, i, &runs[i])).count() as u64;
     let groups = Groups::new(surrogate, values, &seen);
     let mut sight = groups.sight(unstable_runs(surrogate, values, runs.len()), runs.len());
@@ -148,7 +151,7 @@ pub(super) fn judge(
     }
     let residuals = Residuals { seen, blind };
     let forgotten = unlisted as f64 / runs.len() as f64;
-    let judge = Judge::new(surrogate, runs, POINTS, observer)?;
+    let judge = Judge::new(surrogate, (runs, masses), POINTS, observer)?;
     let classes = Class::all(purpose.shares);
     let find = |judge: &Judge<'_>| -> Result<Vec<Found>, Interrupted> {
         let each = classes.iter().enumerate();
@@ -165,7 +168,8 @@ pub(super) fn judge(
     let is_doubtful = is_guess || !is_chance_of(undecided, at_random);
     let random = of_design.len() as f64;
     let misjudged = misjudged(surrogate, values, &residuals.seen, runs, &of_design);
-    let misjudged = if is_chance_of(misjudged, random) { 0.0 } else { misjudged as f64 / random };
+    let mass = |runs: &[usize]| masses.map_or(runs.len() as f64, |masses| runs.iter().map(|&i| masses[i]).sum());
+    let misjudged = if is_chance_of(misjudged.len(), random) { 0.0 } else { mass(&misjudged) / mass(&of_design) };
     let unsettled = excess_of_marginal(surrogate, values, &residuals.seen, runs, &of_design).len();
     // One may be marginal by chance.
     let misjudged = if unsettled > 1 { misjudged.max(unsettled as f64 / random) } else { misjudged };
@@ -188,7 +192,7 @@ pub(super) fn judge(
     // The next level compares the share of these points.
     let mut at: Vec<At> = found.iter().map(|found| found.at).collect();
     if points > POINTS && purpose.tolerance.is_some_and(|tolerance| judgement.may_be_within(tolerance)) {
-        let judge = Judge::new(surrogate, runs, points, observer)?;
+        let judge = Judge::new(surrogate, (runs, masses), points, observer)?;
         found = find(&judge)?;
         at.iter_mut().zip(&found).for_each(|(at, found)| at.mean_change = found.at.mean_change);
         judgement = judged(&found);
@@ -323,15 +327,21 @@ fn residual_quantiles(
     surrogate: &Surrogate,
     residuals: &[Vec<f64>],
     values: &[Vec<f64>],
-    runs: &[Run],
+    (runs, masses): (&[Run], Option<&[f64]>),
 ) -> Vec<Quantile> {
     let residual = |(i, rest): (usize, &Vec<f64>)| {
         let predicted: Vec<f64> = values.iter().zip(rest).map(|(value, rest)| value[i] - rest).collect();
         runs[i].spectrum.max_re() - spectral_abscissa(&surrogate.eigenvalues(&predicted))
     };
-    let mut found: Vec<f64> = residuals.iter().enumerate().map(residual).collect();
-    found.sort_by(f64::total_cmp);
-    LEVELS.map(|level| Quantile { level, value: quantile(&found, level) }).to_vec()
+    let found = residuals.iter().enumerate().map(residual);
+    let Some(masses) = masses else {
+        let mut found: Vec<f64> = found.collect();
+        found.sort_by(f64::total_cmp);
+        return LEVELS.map(|level| Quantile { level, value: quantile(&found, level) }).to_vec();
+    };
+    let mut found: Vec<(f64, f64)> = found.zip(masses.iter().copied()).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    LEVELS.map(|level| Quantile { level, value: weighted_quantile(&found, level) }).to_vec()
 }
 
 /// What is known of a surrogate by quadrature, from `values` of its components and `runs` at nodes with these
@@ -370,6 +380,22 @@ pub(super) fn quantile(sorted: &[f64], level: f64) -> f64 {
     sorted[below] + (position - below as f64) * (sorted[above] - sorted[below])
 }
 
+/// The same of values with weights: a value stands at the weight of all before it and half its own. Of equal weights it
+/// is [`quantile`].
+fn weighted_quantile(sorted: &[(f64, f64)], level: f64) -> f64 {
+    let between = |pair: &[(f64, f64)]| 0.5 * (pair[0].1 + pair[1].1);
+    let wanted = level * sorted.windows(2).map(between).sum::<f64>();
+    let mut position = 0.0;
+    for pair in sorted.windows(2) {
+        let step = between(pair);
+        if step > 0.0 && position + step >= wanted {
+            return pair[0].0 + ((wanted - position) / step).clamp(0.0, 1.0) * (pair[1].0 - pair[0].0);
+        }
+        position += step;
+    }
+    sorted.last().map_or(0.0, |last| last.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -382,6 +408,20 @@ mod tests {
         let sorted = [0.0, 1.0, 4.0];
         assert_eq!([0.0, 0.25, 0.5, 0.75, 1.0].map(|level| quantile(&sorted, level)), [0.0, 0.5, 1.0, 2.5, 4.0]);
         assert_eq!(quantile(&[7.0], 0.3), 7.0);
+    }
+
+    #[test]
+    fn quantiles_of_weighted_values_are_those_of_repeated_ones() {
+        let equal = [(0.0, 0.2), (1.0, 0.2), (4.0, 0.2)];
+        for level in [0.0, 0.1, 0.25, 0.5, 0.75, 1.0] {
+            assert!((weighted_quantile(&equal, level) - quantile(&[0.0, 1.0, 4.0], level)).abs() < 1e-12, "{level}");
+        }
+        let rare = [(0.0, 98.0), (10.0, 1.0), (20.0, 1.0)];
+        assert!(weighted_quantile(&rare, 0.5) > 5.0 && weighted_quantile(&rare, 0.95) < 10.0);
+        assert_eq!(
+            [weighted_quantile(&[(7.0, 0.0)], 0.3), weighted_quantile(&[(1.0, 0.0), (2.0, 0.0)], 0.3)],
+            [7.0, 2.0]
+        );
     }
 
     #[test]

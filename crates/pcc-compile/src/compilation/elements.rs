@@ -245,7 +245,7 @@ impl<'a> Elements<'a> {
         record::judged(&mut surrogate, &judgement, &runs);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
         let rigid_body_modes = super::rigid_body_modes(&runs);
-        Ok(Built { surrogate, rigid_body_modes })
+        Ok(Built { surrogate, rigid_body_modes, given: None })
     }
 
     /// Whether no element asks to be divided any more.

@@ -7,9 +7,11 @@ use crate::fitting::design::{NestedLatinHypercube, Samples};
 use crate::fitting::regression::{Gradients, Response};
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::{
-    ClusterError, Groups, Labels, Spectrum, SpectrumError, Vectors, components as components_at,
+    ClusterError, Computation, Groups, Labels, Reductions, Spectrum, SpectrumError, Vectors,
+    components as components_at,
 };
 use crate::study::{Derivatives, DesignKind, Study};
+use crate::tables::GivenRun;
 use nalgebra::Complex;
 use pcc_evaluate::components::Output;
 use pcc_evaluate::foundation::Observer;
@@ -62,6 +64,35 @@ pub(super) fn groups(outputs: &[Output]) -> Vec<(&[usize], &[usize])> {
     outputs.iter().map(|output| (output.modes.as_slice(), output.reals.as_slice())).collect()
 }
 
+/// Why a run was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// The design asked for it.
+    Design,
+    /// It was given.
+    Given,
+    /// Its point was chosen beside the design.
+    Chosen,
+}
+
+/// Numbers of points whose runs have ended, by their origin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Sizes {
+    /// Of the design.
+    pub design: usize,
+    /// Given.
+    pub given: usize,
+    /// Chosen beside the design.
+    pub chosen: usize,
+}
+
+impl Sizes {
+    /// Number of all of them.
+    pub fn sum(self) -> usize {
+        self.design + self.given + self.chosen
+    }
+}
+
 /// A growing design with one model run per point. No point is run twice. Points whose runs failed, if the study skips
 /// those, are no samples.
 pub(super) struct Evaluations<'a> {
@@ -73,8 +104,8 @@ pub(super) struct Evaluations<'a> {
     tried: Vec<f64>,
     /// For each sample, its number among these points.
     answered: Vec<usize>,
-    /// Points of the design among these; the others were chosen.
-    of_design: Vec<bool>,
+    /// Why each of these was run.
+    origins: Vec<Origin>,
     runs: Vec<Run>,
     /// The run nearest the middle of the inputs on the first level: where labels get their names.
     root: Option<usize>,
@@ -85,7 +116,8 @@ impl<'a> Evaluations<'a> {
     pub fn new(campaign: Campaign<'a>, model: Box<dyn Model>, ranks: bool) -> Result<Self, BuildError> {
         let study = campaign.study;
         let runner = Runner::of(campaign, model);
-        let has_derivatives = runner.model_has_derivatives();
+        let given_have = study.data.as_ref().is_some_and(|data| data.runs.has_derivatives);
+        let has_derivatives = runner.model_has_derivatives() || given_have;
         if study.fit.derivatives == Derivatives::Always && !has_derivatives {
             return Err(BuildError::NoDerivatives);
         }
@@ -102,7 +134,7 @@ impl<'a> Evaluations<'a> {
             runner: if ranks { runner } else { runner.without_ranks() }.with_derivatives(study.uses_derivatives()),
             tried: Vec::new(),
             answered: Vec::new(),
-            of_design: Vec::new(),
+            origins: Vec::new(),
             runs: Vec::new(),
             root: None,
         })
@@ -117,7 +149,22 @@ impl<'a> Evaluations<'a> {
         let old = self.design.len();
         self.design.grow_to(size);
         let design = self.design.placed(|units| self.study.inputs.place(units));
-        self.run(design.points().skip(old), true, observer)?;
+        self.run(design.points().skip(old), Origin::Design, observer)?;
+        self.check_failures()
+    }
+
+    /// Takes runs that are given.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError`] if their answers cannot be those of one model, or too many have failed.
+    pub fn take(&mut self, given: &[&GivenRun]) -> Result<(), BuildError> {
+        let answers = given.iter().map(|run| (run.point.as_slice(), computation(run))).collect();
+        let runs = self.runner.take(answers)?;
+        for (given, run) in given.iter().zip(runs) {
+            let point = self.study.inputs.standardized(&given.point);
+            self.settle(&point, run, Origin::Given);
+        }
         self.check_failures()
     }
 
@@ -127,19 +174,47 @@ impl<'a> Evaluations<'a> {
     ///
     /// As [`Evaluations::grow_to`].
     pub fn add(&mut self, points: &[Vec<f64>], observer: &dyn Observer) -> Result<(), BuildError> {
-        self.run(points.iter().map(Vec::as_slice), false, observer)?;
+        self.run(points.iter().map(Vec::as_slice), Origin::Chosen, observer)?;
         self.check_failures()
     }
 
-    /// Number of points whose runs have ended: of the design, and of those chosen.
-    pub fn sizes(&self) -> [usize; 2] {
-        let of_design = self.of_design.iter().filter(|&&is| is).count();
-        [of_design, self.of_design.len() - of_design]
+    /// Given runs that are not taken, with their standardized points: seen as those that are.
+    ///
+    /// # Errors
+    ///
+    /// As [`Evaluations::take`].
+    pub fn outside(&mut self, given: &[&GivenRun]) -> Result<(Samples, Vec<Run>), BuildError> {
+        let answers = given.iter().map(|run| (run.point.as_slice(), computation(run))).collect();
+        let mut runs: Vec<Run> = self.runner.take(answers)?.into_iter().flatten().collect();
+        agree_on_rigid_body_motion(&mut runs, super::rigid_body_modes(&self.runs));
+        let points = given.iter().flat_map(|run| self.study.inputs.standardized(&run.point)).collect();
+        Ok((Samples::new(self.study.inputs.dimension(), points), runs))
+    }
+
+    /// Number of points whose runs have ended.
+    pub fn sizes(&self) -> Sizes {
+        let count = |origin: Origin| self.origins.iter().filter(|&&own| own == origin).count();
+        Sizes { design: count(Origin::Design), given: count(Origin::Given), chosen: count(Origin::Chosen) }
     }
 
     /// Whether sample `i` is a point of the design.
     pub fn is_of_design(&self, i: usize) -> bool {
-        self.of_design[self.answered[i]]
+        self.origins[self.answered[i]] == Origin::Design
+    }
+
+    /// Whether sample `i` was chosen beside the design, so that it stands for no others.
+    pub fn is_chosen(&self, i: usize) -> bool {
+        self.origins[self.answered[i]] == Origin::Chosen
+    }
+
+    /// Whether the answers of a design of this size are there, or can be had.
+    pub fn can_grow_to(&self, size: usize) -> bool {
+        let Some(ledger) = self.campaign.ledger.filter(|ledger| ledger.settles()) else { return true };
+        let mut design = self.design.clone();
+        design.grow_to(size);
+        let design = design.placed(|units| self.study.inputs.place(units));
+        let mut new = design.points().skip(self.design.len());
+        new.all(|point| ledger.find(&self.study.inputs.physical(point)).is_some())
     }
 
     /// What a fit needs of all points, with modes by frequency rank.
@@ -202,13 +277,13 @@ impl<'a> Evaluations<'a> {
 
     /// Whether runs come with derivatives.
     pub fn has_derivatives(&self) -> bool {
-        self.runner.has_derivatives()
+        self.study.uses_derivatives() && (self.runner.has_derivatives() || self.sizes().given > 0)
     }
 
     fn run<'p>(
         &mut self,
         standardized: impl Iterator<Item = &'p [f64]>,
-        is_of_design: bool,
+        origin: Origin,
         observer: &dyn Observer,
     ) -> Result<(), RunError> {
         let standardized: Vec<&[f64]> = standardized.collect();
@@ -217,14 +292,19 @@ impl<'a> Evaluations<'a> {
         let runs = self.runner.run_skipping(&points, observer);
         observer.finish();
         for (point, run) in standardized.into_iter().zip(runs?) {
-            if let Some(run) = run {
-                self.answered.push(self.of_design.len());
-                self.runs.push(run);
-            }
-            self.of_design.push(is_of_design);
-            self.tried.extend_from_slice(point);
+            self.settle(point, run, origin);
         }
         Ok(())
+    }
+
+    /// Takes note of how a run has ended.
+    fn settle(&mut self, point: &[f64], run: Option<Run>, origin: Origin) {
+        if let Some(run) = run {
+            self.answered.push(self.origins.len());
+            self.runs.push(run);
+        }
+        self.origins.push(origin);
+        self.tried.extend_from_slice(point);
     }
 
     /// Whether enough runs answered: those that failed leave holes in the design, and more than half of it is no
@@ -242,7 +322,7 @@ impl<'a> Evaluations<'a> {
 
     /// Number of runs that failed.
     pub fn failed(&self) -> usize {
-        self.of_design.len() - self.runs.len()
+        self.origins.len() - self.runs.len()
     }
 
     /// The runs, if some failed.
@@ -297,7 +377,7 @@ impl<'a> Evaluations<'a> {
     /// without. Runs in which an output's modes cannot be separated from the rest of the spectrum have none for its
     /// components.
     fn gradients(&self, outputs: &[Output]) -> Option<Vec<Gradients>> {
-        if !self.runner.has_derivatives() {
+        if !self.has_derivatives() {
             return None;
         }
         let samples = self.samples();
@@ -312,6 +392,15 @@ impl<'a> Evaluations<'a> {
         };
         Some(outputs.iter().flat_map(of_output).collect())
     }
+}
+
+/// What a given run answered, or why it failed.
+fn computation(run: &GivenRun) -> Result<Computation, String> {
+    let answer = run.answer.as_ref().map_err(Clone::clone)?;
+    let (of, slopes): (Vec<_>, Vec<_>) =
+        answer.slopes.iter().map(|(k, slopes)| (answer.eigenvalues[*k], slopes.clone())).unzip();
+    let reductions = Reductions::of_slopes(&of, &slopes);
+    Ok(Computation { reductions, ..Computation::of_eigenvalues(answer.eigenvalues.clone()) })
 }
 
 /// The values of each component of `outputs`, by id: one value per run; or the first run without one.

@@ -76,5 +76,5 @@ fn infinite_in(
     let nearest = between.reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
     let zero = if is_one_sided { error } else { error.max(ZERO * spread) };
     let is_zero = |at: &usize| predicted[*at].abs() <= zero;
-    Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point(&surrogate, at))))
+    Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point((&study.inputs, study.seed), at))))
 }

@@ -3,7 +3,7 @@
 use pcc_evaluate::components::Block;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
 use pcc_evaluate::foundation::{Interrupted, Observer, try_map};
-use pcc_evaluate::probability::inputs::random_point;
+use pcc_evaluate::probability::inputs::{InputSpace, random_point};
 use pcc_evaluate::probability::random::Purpose;
 use pcc_evaluate::surrogate::Surrogate;
 
@@ -32,7 +32,8 @@ pub(super) fn at_judged_points(
     let parts = try_map(points.div_ceil(PART), |part| {
         observer.check()?;
         let range = part * PART..points.min((part + 1) * PART);
-        let points: Vec<Vec<f64>> = range.map(|i| judged_point(surrogate, i)).collect();
+        let points: Vec<Vec<f64>> =
+            range.map(|i| judged_point((&surrogate.inputs, surrogate.training.seed), i)).collect();
         Ok(evaluate_points(surrogate, &plan, &points.iter().map(Vec::as_slice).collect::<Vec<_>>()))
     })?;
     let mut block = Block::with_capacity(surrogate.component_count(), surrogate.labels().len(), points);
@@ -42,10 +43,9 @@ pub(super) fn at_judged_points(
     Ok(block)
 }
 
-/// The standardized point number `i` of those.
-pub(super) fn judged_point(surrogate: &Surrogate, i: usize) -> Vec<f64> {
-    let mut point = vec![0.0; surrogate.inputs.dimension()];
-    let (inputs, seed) = (&surrogate.inputs, surrogate.training.seed);
+/// The standardized point number `i` of those of inputs and a seed.
+pub(super) fn judged_point((inputs, seed): (&InputSpace, u64), i: usize) -> Vec<f64> {
+    let mut point = vec![0.0; inputs.dimension()];
     random_point(inputs, seed, Purpose::Design, FIRST_INDEX + i as u64, &mut point);
     point
 }

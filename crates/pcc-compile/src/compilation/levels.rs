@@ -8,21 +8,24 @@ use super::blindness::{LEAST_RARE, Sight};
 use super::components::{ComponentFit, ComponentResult};
 use super::decision::{Before, Judged, Previous, Purpose, judge};
 use super::end_levels::end_levels;
-use super::evaluations::{Evaluations, Level, groups};
+use super::evaluations::{Evaluations, Level, Sizes, groups};
+use super::given::GivenLevels;
+use super::given_use::GivenUse;
 use super::grouped::GroupedEigenvalues;
 use super::judgement::Judgement;
 use super::level_remark::{Spent, remark, slowest};
+use super::mass::masses;
 use super::near_boundary::near_boundary;
 use super::ranked::RankedModes;
 use super::stopping::{EarlyEnd, StoppingRule};
 use super::{BuildError, Built, record, rigid_body_modes};
-use crate::campaign::Campaign;
+use crate::campaign::{Campaign, Ledger, RunError};
 use crate::mechanics::model::Model;
 use crate::mechanics::spectrum::Target;
 use crate::study::{Enrich, Study};
 use pcc_evaluate::components::Output;
 use pcc_evaluate::evaluation::{Plan, evaluate_points};
-use pcc_evaluate::foundation::{Observer, is_interruption};
+use pcc_evaluate::foundation::{Interrupted, Observer, is_interruption};
 use pcc_evaluate::surrogate::Surrogate;
 use std::time::Instant;
 
@@ -47,30 +50,37 @@ const IDLE_BATCHES: usize = 3;
 /// the runs of its second level.
 const BLIND_GROWTH: usize = 2;
 
+/// Beside runs that are given, a level of the design adds this part of what there is: fewer change little.
+const WORTH_A_LEVEL: usize = 4;
+
 /// Builds level by level, until the stopping rule holds.
 pub(super) fn build(
     campaign: Campaign<'_>,
     model: Box<dyn Model>,
     observer: &dyn Observer,
 ) -> Result<Built, BuildError> {
-    let mut levels = Levels::new(campaign, model)?;
+    let mut levels = Levels::new(campaign, model, observer)?;
     loop {
         match levels.next(observer) {
             Ok(None) => {}
             Ok(Some(surrogate)) => {
                 let end = levels.early_end;
-                return Ok(levels.ended(surrogate, end));
+                return levels.ended(surrogate, end);
+            }
+            Err(error @ BuildError::Run(RunError::Unanswered { .. })) if levels.settles() => {
+                let best = levels.best().ok_or_else(|| levels.fitting.refusal().unwrap_or(error))?;
+                return levels.ended(best, Some(EarlyEnd::DataExhausted));
             }
             Err(error) if is_interruption(&error) && observer.takes_what_there_is() => {
                 let best = levels.best().ok_or(error)?;
-                return Ok(levels.ended(best, Some(EarlyEnd::Interrupted)));
+                return levels.ended(best, Some(EarlyEnd::Interrupted));
             }
             Err(error) => return Err(error),
         }
         if let Some(end) = levels.early_end
             && let Some(best) = levels.best()
         {
-            return Ok(levels.ended(best, Some(end)));
+            return levels.ended(best, Some(end));
         }
     }
 }
@@ -86,15 +96,26 @@ struct Candidate {
 
 /// What makes a level.
 enum Growth {
+    /// Runs that are given.
+    Given,
     /// The design grows to this size.
     Design(usize),
     /// Runs at these points near the boundary.
     Batch(Vec<Vec<f64>>),
 }
 
+impl Growth {
+    fn is_given(&self) -> bool {
+        matches!(self, Self::Given)
+    }
+}
+
 /// The levels so far.
 struct Levels<'a> {
     study: &'a Study,
+    campaign: Campaign<'a>,
+    /// Runs that are given.
+    given: Option<GivenLevels<'a>>,
     fitting: Fitting<'a>,
     evaluations: Evaluations<'a>,
     stopping: StoppingRule,
@@ -123,16 +144,20 @@ struct Levels<'a> {
 }
 
 impl<'a> Levels<'a> {
-    fn new(campaign: Campaign<'a>, model: Box<dyn Model>) -> Result<Self, BuildError> {
+    fn new(campaign: Campaign<'a>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Self, BuildError> {
         let study = campaign.study;
         let fitting = Fitting::new(campaign)?;
+        let given = GivenLevels::new(study, observer)?;
+        let growth = if given.is_some() { Growth::Given } else { Growth::Design(study.design.initial) };
         Ok(Self {
             study,
+            campaign,
+            given,
             evaluations: Evaluations::new(campaign, model, matches!(fitting, Fitting::Ranked(_)))?,
             fitting,
             stopping: StoppingRule::new(study),
             sizes: Vec::new(),
-            growth: Growth::Design(study.design.initial),
+            growth,
             clear_batches: 0,
             least_error: f64::INFINITY,
             idle_batches: 0,
@@ -152,25 +177,33 @@ impl<'a> Levels<'a> {
         // Step 1: the design, and the model at its points.
         let start = Instant::now();
         let is_batch = match &self.growth {
+            Growth::Given => {
+                let given = self.given.as_mut().map_or_else(Vec::new, GivenLevels::next);
+                self.evaluations.take(&given)?;
+                false
+            }
             Growth::Design(size) => {
+                let is_first = self.evaluations.sizes().design == 0;
                 self.evaluations.grow_to(*size, observer)?;
-                self.run_end_levels(observer)?;
+                if is_first {
+                    self.run_end_levels(observer)?;
+                }
                 false
             }
             Growth::Batch(points) => self.evaluations.add(points, observer).map(|()| true)?,
         };
         self.batches = if is_batch { self.batches + 1 } else { 0 };
-        let size = self.evaluations.sizes().iter().sum();
+        let size = self.evaluations.sizes().sum();
         self.sizes.push(size as u64);
         self.spent.runs += start.elapsed();
         let start = Instant::now();
         // Steps 2 and 3: what the components are, and their terms and coefficients.
-        let next = self.next_design().filter(|_| !self.study.fit.method.has_fixed_design());
+        let next = self.next_growth().filter(|growth| growth.is_given() || !self.study.fit.method.has_fixed_design());
         let fitted = self.fitting.fit(&mut self.evaluations, next.is_some(), observer)?;
         // Step 4: a design that is too small for the terms that matter grows.
-        let (level, fitted) = match (next, fitted) {
-            (Some(next), None) => {
-                self.growth = Growth::Design(next);
+        let (level, fitted) = match (&next, fitted) {
+            (Some(_), None) => {
+                self.growth = next.unwrap_or(Growth::Given);
                 return Ok(None);
             }
             (None, None) => (self.evaluations.by_rank()?, Vec::new()),
@@ -180,16 +213,18 @@ impl<'a> Levels<'a> {
         self.grouping.clone_from(&level.outputs);
         // Step 5: enough, or the next level.
         let runs = self.evaluations.runs();
-        let mut surrogate = record::surrogate(self.study, &self.evaluations, &level, &fitted, &self.sizes);
+        let masses = self.masses(&level, observer)?;
+        let mut surrogate =
+            record::surrogate(self.study, (&self.evaluations, masses.as_deref()), &level, &fitted, &self.sizes);
         let slowest = slowest(&level.outputs, &fitted);
         let results: Vec<_> = fitted.into_iter().map(|fit| fit.result).collect();
         let is_last = next.is_none() || self.stopping.needs_no_judgement(&results);
         let before = self.previous.as_ref().map(|previous| Before { previous, is_regrouped });
         let tolerance = self.study.fit.proportion_tolerance;
-        let of_design: Vec<usize> = (0..runs.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
+        let of_design: Vec<usize> = (0..runs.len()).filter(|&i| !self.evaluations.is_chosen(i)).collect();
         let near_boundary = (runs.len() - of_design.len()).saturating_sub(self.end_levels);
         let values = &level.values;
-        let judged = Judged { surrogate: &surrogate, fitted: &results, values, runs, of_design, near_boundary };
+        let judged = Judged { surrogate: &surrogate, fitted: &results, values, runs, of_design, masses, near_boundary };
         let is_final = is_batch && self.clear_batches + 1 >= CLEAR_BATCHES;
         let mut judgement =
             judge(judged, before, Purpose { tolerance, is_last, is_final, shares: &self.study.fit.shares }, observer)?;
@@ -209,12 +244,18 @@ impl<'a> Levels<'a> {
             true => self.stopping.are_accurate(&results),
             false => self.stopping.holds(&results, &judgement),
         };
-        let batch = (!is_first && !is_enough && tolerance.is_some() && self.stopping.are_accurate(&results))
+        // All runs that are there are taken, whatever a part of them says.
+        let waits = next.as_ref().is_some_and(Growth::is_given);
+        let is_enough = is_enough && !waits;
+        let batch = (!is_first && !waits && !is_enough && tolerance.is_some() && self.stopping.are_accurate(&results))
             .then(|| self.batch(&surrogate, &judgement, former))
             .flatten();
-        let growth = batch.map(Growth::Batch).or(next.map(Growth::Design)).filter(|_| !is_enough);
+        let growth = batch.map(Growth::Batch).or(next).filter(|_| !is_enough);
         if growth.is_none() && !is_enough && !self.study.fit.method.has_fixed_design() {
-            self.early_end = self.stopping.end_at_largest_design(&results);
+            self.early_end = match self.settles() {
+                true => Some(EarlyEnd::DataExhausted),
+                false => self.stopping.end_at_largest_design(&results),
+            };
         }
         let Some(growth) = growth else {
             return match self.fitting.refusal() {
@@ -226,7 +267,7 @@ impl<'a> Levels<'a> {
             let reference = judgement.share.map_or(1.0, |share| share.reference());
             self.candidates.push(Candidate { surrogate, error: judgement.error, reference });
         }
-        self.early_end = self.stopping.early_end(&results, self.fitting.work());
+        self.early_end = self.stopping.early_end(&results, self.fitting.work()).filter(|_| !waits);
         if self.is_blind_for_good(&growth, &judgement) {
             self.early_end = Some(EarlyEnd::Blind);
         }
@@ -236,11 +277,8 @@ impl<'a> Levels<'a> {
 
     /// Runs what the first level of the design has left out of discrete inputs.
     fn run_end_levels(&mut self, observer: &dyn Observer) -> Result<(), BuildError> {
-        if !self.sizes.is_empty() {
-            return Ok(());
-        }
         let mut points = end_levels(&self.study.inputs, &self.evaluations.points());
-        points.truncate(self.study.design.maximum.saturating_sub(self.evaluations.sizes().iter().sum()));
+        points.truncate(self.study.design.maximum.saturating_sub(self.evaluations.sizes().sum()));
         self.evaluations.add(&points, observer)?;
         self.end_levels = points.len();
         Ok(())
@@ -260,11 +298,36 @@ impl<'a> Levels<'a> {
         sight.clearance.is_some() || has_found || self.batches < most
     }
 
-    /// The size of the next design: with the runs near the boundary it is not larger than the study allows.
+    /// What makes the next level, unless runs near the boundary do.
+    fn next_growth(&self) -> Option<Growth> {
+        match self.given.as_ref().is_some_and(GivenLevels::are_left) {
+            true => Some(Growth::Given),
+            false => self.next_design().map(Growth::Design),
+        }
+    }
+
+    /// The size of the next design: with the runs near the boundary and those that are given it is not larger than the
+    /// study allows. Beside runs that are given it begins anew, and adds enough to tell.
     fn next_design(&self) -> Option<usize> {
-        let [of_design, chosen] = self.evaluations.sizes();
-        let most = self.study.design.maximum.saturating_sub(chosen);
-        self.study.design.next_size(of_design).map(|size| size.min(most)).filter(|&size| size > of_design)
+        let Sizes { design, given, chosen } = self.evaluations.sizes();
+        let most = self.study.design.maximum.saturating_sub(chosen + given);
+        let size = match given {
+            0 => self.study.design.next_size(design)?,
+            _ if design == 0 => self.study.design.initial.max(given / WORTH_A_LEVEL),
+            _ => (design + self.study.design.step).max(design + (given + design) / WORTH_A_LEVEL),
+        };
+        Some(size.min(most)).filter(|&size| size > design && self.evaluations.can_grow_to(size))
+    }
+
+    /// The masses of the runs of a level, if some are given.
+    fn masses(&self, level: &Level, observer: &dyn Observer) -> Result<Option<Vec<f64>>, Interrupted> {
+        let (inputs, seed) = (&self.study.inputs, self.study.seed);
+        self.given.as_ref().map(|_| masses(inputs, seed, &level.samples, observer)).transpose()
+    }
+
+    /// Whether the build makes do with the runs that there are.
+    fn settles(&self) -> bool {
+        self.campaign.ledger.is_some_and(Ledger::settles)
     }
 
     /// Points near the boundary for the next runs, if they are worth more than a level of the design.
@@ -280,7 +343,7 @@ impl<'a> Levels<'a> {
         if !is_worth_it {
             return None;
         }
-        let room = self.study.design.maximum.saturating_sub(self.evaluations.sizes().iter().sum());
+        let room = self.study.design.maximum.saturating_sub(self.evaluations.sizes().sum());
         let wanted = self.study.inputs.dimension().max(LEAST_BATCH).min(self.study.design.step).min(room);
         let is_blind = sight.is_blind() || judgement.is_blind_to_named();
         let judged = (judgement.excess.as_slice(), judgement.rarer.as_slice());
@@ -331,12 +394,17 @@ impl<'a> Levels<'a> {
     }
 
     /// The result: a level, with all runs that were spent.
-    fn ended(&self, mut surrogate: Surrogate, early_end: Option<EarlyEnd>) -> Built {
+    fn ended(&mut self, mut surrogate: Surrogate, early_end: Option<EarlyEnd>) -> Result<Built, BuildError> {
         let is_settled = self.clear_batches >= CLEAR_BATCHES && early_end.is_none();
         let sight = self.sight.map(|sight| Sight { clearance: sight.clearance.filter(|_| is_settled), ..sight });
         record::ended(&mut surrogate, (&self.evaluations, self.end_levels), sight, early_end);
         surrogate.self_test = surrogate.make_self_test(record::self_test_points(self.study));
-        Built { surrogate, rigid_body_modes: rigid_body_modes(self.evaluations.runs()) }
+        let given = match &self.given {
+            Some(given) => Some(GivenUse::of(given, &mut self.evaluations, &surrogate, self.study)?),
+            None => None,
+        };
+        given.iter().for_each(|found| record::given(&mut surrogate, found));
+        Ok(Built { surrogate, rigid_body_modes: rigid_body_modes(self.evaluations.runs()), given })
     }
 }
 

@@ -8,6 +8,8 @@ mod end_levels;
 mod error;
 mod error_history;
 mod evaluations;
+mod given;
+mod given_use;
 mod group_fits;
 mod grouped;
 mod grouping;
@@ -16,6 +18,7 @@ mod judged_points;
 mod judgement;
 mod level_remark;
 mod levels;
+mod mass;
 mod named_shares;
 mod near_boundary;
 mod numbering;
@@ -26,11 +29,16 @@ mod stopping;
 mod tests;
 mod to_file;
 mod trials;
+mod uncovered;
 mod undecided;
 mod unseen;
+mod validation;
 
 pub use error::BuildError;
+pub use given_use::GivenUse;
 pub use to_file::{BuildFileError, BuiltFile, build_to_file};
+pub use uncovered::Uncovered;
+pub use validation::Validation;
 
 use crate::campaign::{Campaign, Ledger, Run};
 use crate::mechanics::model::Model;
@@ -87,6 +95,8 @@ struct Built {
     surrogate: Surrogate,
     /// Number of eigenvalues that are rigid-body motion.
     rigid_body_modes: usize,
+    /// What became of runs that were given.
+    given: Option<GivenUse>,
 }
 
 fn built(campaign: Campaign<'_>, model: Box<dyn Model>, observer: &dyn Observer) -> Result<Built, BuildError> {

@@ -25,7 +25,8 @@ pub(super) fn near_boundary(
 ) -> Vec<Vec<f64>> {
     let zone = zone(excess, rarer, wanted);
     let is_rare = |k: &usize| rarer[zone[*k]];
-    let candidates: Vec<Vec<f64>> = zone.iter().map(|&i| judged_point(surrogate, i)).collect();
+    let candidates: Vec<Vec<f64>> =
+        zone.iter().map(|&i| judged_point((&surrogate.inputs, surrogate.training.seed), i)).collect();
     let mut distances: Vec<f64> = candidates
         .iter()
         .map(|point| tried.points().map(|other| square_distance(point, other)).fold(f64::INFINITY, f64::min))

@@ -3,9 +3,12 @@
 use super::blindness::Sight;
 use super::components::ComponentResult;
 use super::evaluations::{Evaluations, Level};
+use super::given_use::GivenUse;
 use super::judgement::Judgement;
 use super::stopping::EarlyEnd;
+use super::uncovered::Uncovered;
 use super::undecided::excess_of_marginal;
+use super::validation::Validation;
 use crate::campaign::Run;
 use crate::fitting::design::NestedLatinHypercube;
 use crate::fitting::fit::method::{MethodSetting, Value};
@@ -63,7 +66,7 @@ pub(super) fn of_elements(
 /// The surrogate of one level, not yet judged.
 pub(super) fn surrogate(
     study: &Study,
-    evaluations: &Evaluations<'_>,
+    (evaluations, masses): (&Evaluations<'_>, Option<&[f64]>),
     level: &Level,
     fitted: &[ComponentResult],
     sizes: &[u64],
@@ -80,7 +83,7 @@ pub(super) fn surrogate(
     let whole = Mesh::whole(study.inputs.dimension());
     let mut surrogate = new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training);
     surrogate.trained_domain = TrainedDomain::of(&study.inputs, level.samples.points());
-    surrogate.left_out = left_out(evaluations, fitted);
+    surrogate.left_out = left_out(evaluations, fitted, masses);
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());
     surrogate.verdict.is_self_adjoint = evaluations.is_self_adjoint();
@@ -100,7 +103,7 @@ fn missed_of_marginal(
 ) -> Option<f64> {
     let left_out = fitted.iter().map(|fit| fit.result.leave_one_out_residuals.as_ref());
     let left_out: Vec<&Vec<f64>> = left_out.collect::<Option<_>>()?;
-    if left_out.len() != values.len() {
+    if left_out.len() != values.len() || left_out.iter().any(|rest| rest.len() != runs.len()) {
         return None;
     }
     let residuals: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
@@ -113,12 +116,31 @@ fn missed_of_marginal(
 }
 
 /// What the components miss at points of the design that are left out: those near the boundary were chosen, and do not
-/// stand for others.
-fn left_out(evaluations: &Evaluations<'_>, fitted: &[ComponentResult]) -> Option<LeftOut> {
+/// stand for others. Runs that were given stand for as much as their masses say: of each so many are taken.
+fn left_out(evaluations: &Evaluations<'_>, fitted: &[ComponentResult], masses: Option<&[f64]>) -> Option<LeftOut> {
     let residuals = fitted.iter().map(|fit| fit.result.leave_one_out_residuals.as_ref());
     let residuals: Vec<&Vec<f64>> = residuals.collect::<Option<_>>()?;
-    let of_design = (0..evaluations.runs().len()).filter(|&i| evaluations.is_of_design(i));
-    LeftOut::new(of_design.map(|i| residuals.iter().map(|list| list[i]).collect()).collect())
+    let mut runs: Vec<usize> = (0..evaluations.runs().len()).filter(|&i| !evaluations.is_chosen(i)).collect();
+    if let Some(masses) = masses {
+        runs = by_mass(&runs, masses);
+    }
+    LeftOut::new(runs.into_iter().map(|i| residuals.iter().map(|list| list[i]).collect()).collect())
+}
+
+/// As many of these as count effectively, (Σm)²/Σm², evenly spread over their masses.
+fn by_mass(runs: &[usize], masses: &[f64]) -> Vec<usize> {
+    let (sum, squares) =
+        runs.iter().fold((0.0, 0.0), |(sum, squares), &i| (sum + masses[i], squares + masses[i].powi(2)));
+    let count = if squares > 0.0 { (sum * sum / squares).floor() as usize } else { 0 };
+    let mut chosen = Vec::with_capacity(count);
+    let mut before = 0.0;
+    for &i in runs {
+        before += masses[i];
+        while chosen.len() < count && (chosen.len() as f64 + 0.5) * sum < before * count as f64 {
+            chosen.push(i);
+        }
+    }
+    chosen
 }
 
 /// Names of the groups that came too close to other modes for derivatives at some run.
@@ -135,6 +157,25 @@ fn tolerance(runs: &[Run]) -> f64 {
     let mut errors: Vec<f64> = errors.collect();
     errors.sort_by(f64::total_cmp);
     errors.get(errors.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Takes down what is known of runs that were given.
+pub(super) fn given(surrogate: &mut Surrogate, found: &GivenUse) {
+    let settings = &mut surrogate.training.settings;
+    settings.push(setting("given_runs", SettingValue::Integer(found.fitted)));
+    if let Some(Validation { runs, misjudged, rms_error, .. }) = found.validation {
+        settings.push(setting("validating_runs", SettingValue::Integer(runs)));
+        settings.push(setting("validating_misjudged", SettingValue::Integer(misjudged)));
+        settings.push(number("validating_rms_error", rms_error));
+    }
+    if let Some(Uncovered { share, place }) = &found.uncovered {
+        settings.push(number("uncovered_share", *share));
+        let ends = |(name, [lower, upper]): &(String, [f64; 2])| format!("{name} {lower:?} {upper:?}");
+        if !place.is_empty() {
+            let place = place.iter().map(ends).collect::<Vec<_>>().join(", ");
+            settings.push(setting("uncovered_place", SettingValue::Text(place)));
+        }
+    }
 }
 
 /// A surrogate of one output alone, for trials.
@@ -187,7 +228,7 @@ pub(super) fn ended(
     surrogate.training.counts.failed = evaluations.failed() as u64;
     surrogate.coverage = evaluations.coverage();
     let settings = &mut surrogate.training.settings;
-    let near_boundary = evaluations.sizes()[1] - at_end_levels;
+    let near_boundary = evaluations.sizes().chosen - at_end_levels;
     for (name, runs) in [("runs_near_boundary", near_boundary), ("runs_at_end_levels", at_end_levels)] {
         if runs > 0 {
             settings.push(setting(name, SettingValue::Integer(runs as u64)));

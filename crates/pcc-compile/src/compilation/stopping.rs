@@ -37,6 +37,8 @@ pub(super) enum EarlyEnd {
     Blind,
     /// The design is as large as the study allows, and no component asks for a larger one.
     LargestDesign,
+    /// The runs that are given are all that there is.
+    DataExhausted,
     /// The user asked to stop and to take what there is.
     Interrupted,
 }
@@ -49,6 +51,7 @@ impl EarlyEnd {
             Self::FitsCostMore => "fits-cost-more",
             Self::Blind => "blind",
             Self::LargestDesign => "largest-design",
+            Self::DataExhausted => "data-exhausted",
             Self::Interrupted => "interrupted",
         }
     }

@@ -1,6 +1,6 @@
 //! A build whose runs are recorded and whose surrogate goes to a file.
 
-use super::{BuildError, Built, built};
+use super::{BuildError, Built, GivenUse, built};
 use crate::campaign::journal::JournalError;
 use crate::campaign::{Books, Failure, Note, Recording};
 use crate::study::Study;
@@ -43,6 +43,8 @@ pub struct BuiltFile {
     pub reused: u64,
     /// Runs that failed and were skipped.
     pub failures: Vec<Failure>,
+    /// What became of runs that were given, if some were.
+    pub given: Option<GivenUse>,
     /// Wall-clock time of the build.
     pub elapsed_seconds: f64,
 }
@@ -67,7 +69,7 @@ pub fn build_to_file(
     books.notes.iter().for_each(tell);
     let start = Instant::now();
     let model = study.model().map_err(BuildError::from)?;
-    let Built { mut surrogate, rigid_body_modes } = match built(books.campaign(study), model, observer) {
+    let Built { mut surrogate, rigid_body_modes, given } = match built(books.campaign(study), model, observer) {
         Ok(built) => built,
         Err(error) => {
             if matches!(error, BuildError::TooManyFailures { .. }) && books.ledger.reused() > 0 {
@@ -91,6 +93,7 @@ pub fn build_to_file(
         journal: books.kept_journal().map(Path::to_owned),
         reused: books.ledger.reused(),
         failures: books.ledger.failures(),
+        given,
         elapsed_seconds,
     };
     match observer.interrupted() {

@@ -79,9 +79,10 @@ pub(super) struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
+    /// Runs that were given have masses, as far as they stand for the inputs' laws.
     pub fn new(
         surrogate: &'a Surrogate,
-        runs: &[Run],
+        (runs, masses): (&[Run], Option<&[f64]>),
         points: usize,
         observer: &'a dyn Observer,
     ) -> Result<Self, Interrupted> {
@@ -100,7 +101,9 @@ impl<'a> Judge<'a> {
         let mut sorted: Vec<f64> = distances.iter().copied().filter(|&distance| distance > 0.0).collect();
         sorted.sort_by(f64::total_cmp);
         let scale = if sorted.is_empty() { f64::MIN_POSITIVE } else { quantile(&sorted, 0.5) };
-        let weights = distances.iter().map(|distance| 1.0 / (1.0 + (distance / scale).powi(2))).collect();
+        let mass = |i: usize| masses.map_or(1.0, |masses| masses[i]);
+        let near_zero = |(i, distance): (usize, &f64)| mass(i) / (1.0 + (distance / scale).powi(2));
+        let weights = distances.iter().enumerate().map(near_zero).collect();
         Ok(Self { surrogate, block, near, weights, observer })
     }
 

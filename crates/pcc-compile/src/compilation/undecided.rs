@@ -32,19 +32,19 @@ pub(super) fn undecided(surrogate: &Surrogate, values: &[Vec<f64>], residuals: &
     runs.iter().enumerate().filter(is_undecided).count()
 }
 
-/// Number of misjudged runs among `chosen`, with values and residuals as of [`undecided`].
+/// The misjudged runs among `chosen`, with values and residuals as of [`undecided`].
 pub(super) fn misjudged(
     surrogate: &Surrogate,
     values: &[Vec<f64>],
     residuals: &[Vec<f64>],
     runs: &[Run],
     chosen: &[usize],
-) -> usize {
+) -> Vec<usize> {
     let is_misjudged = |&&i: &&usize| {
         let predicted: Vec<f64> = values.iter().zip(&residuals[i]).map(|(value, rest)| value[i] - rest).collect();
         is_not_unstable(surrogate.top(&predicted).excess) != is_not_unstable(runs[i].spectrum.top().excess)
     };
-    chosen.iter().filter(is_misjudged).count()
+    chosen.iter().filter(is_misjudged).copied().collect()
 }
 
 /// What the surrogate makes of runs that the model calls marginal, each left out: the excess that is not zero then, of

@@ -1,27 +1,15 @@
 //! A column of a table of measured values.
 
+use crate::tables::{TextError, delimiter, is_decimal_comma, line, number, read_text};
 use std::path::Path;
 use thiserror::Error;
 
 /// Why a table gives no values.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TableError {
-    /// It cannot be read.
-    #[error("{file} cannot be read: {cause}")]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// What the system says.
-        cause: String,
-    },
-    /// It is not text as everybody reads it.
-    #[error("{file} is not UTF-8 text; convert it, as with iconv -f {encoding} -t UTF-8 {file} > utf8.csv")]
-    NotText {
-        /// The file.
-        file: String,
-        /// What it may be instead.
-        encoding: &'static str,
-    },
+    /// It cannot be read as text.
+    #[error(transparent)]
+    Text(#[from] TextError),
     /// It has several columns, and none is named.
     #[error("{file} has {} columns; add column = {:?}, or another of {}", columns.len(), columns[0], columns.join(", "))]
     Columns {
@@ -101,15 +89,11 @@ pub enum TableError {
     },
 }
 
-/// What separates columns, in the order of precedence: a file that has semicolons or tabs may have decimal commas, too.
-const DELIMITERS: [u8; 2] = [b';', b'\t'];
-
 /// The numbers of a column. Columns end at commas, or at semicolons or tabs if the first line has some.
 pub(super) fn values(file: &str, column: Option<&str>, folder: &Path) -> Result<Vec<f64>, TableError> {
     let name = || file.to_owned();
-    let unreadable = |cause: String| TableError::Unreadable { file: name(), cause };
-    let bytes = std::fs::read(folder.join(file)).map_err(|error| unreadable(error.to_string()))?;
-    let text = text(bytes).map_err(|encoding| TableError::NotText { file: name(), encoding })?;
+    let unreadable = |cause: String| TableError::Text(TextError::Unreadable { file: name(), cause });
+    let text = read_text(&folder.join(file), file)?;
     let mut reader = csv::ReaderBuilder::new();
     let reader = reader.delimiter(delimiter(&text)).has_headers(false).flexible(true).trim(csv::Trim::All);
     let mut rows = reader.from_reader(text.as_bytes()).into_records();
@@ -149,16 +133,6 @@ fn position(head: &[String], column: &str) -> Result<usize, usize> {
     }
 }
 
-/// The line on which a row begins: lines end at LF, CR LF or CR, of which the reader counts LF alone, and it may stand
-/// before blank lines or in the middle of CR LF.
-fn line(text: &str, row: &csv::StringRecord) -> u64 {
-    let start = row.position().map_or(0, |position| position.byte() as usize);
-    let rest = text.get(start..).unwrap_or_default().trim_start_matches(['\r', '\n']);
-    let before = &text[..text.len() - rest.len()];
-    let [feeds, returns, both] = ["\n", "\r", "\r\n"].map(|end| before.matches(end).count());
-    (1 + feeds + returns - both) as u64
-}
-
 /// What is wrong with a row.
 enum Wrong {
     Number(String),
@@ -189,32 +163,6 @@ fn cell(row: &csv::StringRecord, position: usize, columns: usize) -> Result<f64,
     let wrong =
         || if is_decimal_comma(found) { Wrong::Comma(found.to_owned()) } else { Wrong::Number(found.to_owned()) };
     number(found).ok_or_else(wrong)
-}
-
-/// The text of a file; what it may be instead, if it is none.
-fn text(bytes: Vec<u8>) -> Result<String, &'static str> {
-    let is_wide = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) || bytes.contains(&0);
-    if is_wide {
-        return Err("UTF-16");
-    }
-    let text = String::from_utf8(bytes).map_err(|_| "LATIN1")?;
-    Ok(text.trim_start_matches('\u{feff}').to_owned())
-}
-
-/// What separates the columns of the first line, but for what stands in quotes.
-fn delimiter(text: &str) -> u8 {
-    let first = text.split(['\r', '\n']).find(|line| !line.is_empty()).unwrap_or_default();
-    let plain: String = first.split('"').step_by(2).collect();
-    DELIMITERS.into_iter().find(|byte| plain.as_bytes().contains(byte)).unwrap_or(b',')
-}
-
-fn number(cell: &str) -> Option<f64> {
-    cell.parse().ok().filter(|value: &f64| value.is_finite())
-}
-
-/// Whether it is a number but for the comma that it has for a point.
-fn is_decimal_comma(cell: &str) -> bool {
-    cell.contains(',') && number(&cell.replace(',', ".")).is_some()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::column::TableError;
 use super::dependence::DependenceError;
 use crate::mechanics::model::matrices::MatricesError;
+use crate::tables::DataError;
 use pcc_evaluate::probability::inputs::{DescriptionError, InputError, MarginalError};
 use thiserror::Error;
 
@@ -286,6 +287,30 @@ pub enum StudyError {
         /// Why.
         #[source]
         cause: Box<TableError>,
+    },
+    /// Tables of runs that give none.
+    #[error("{}{cause}", place.as_ref().map_or_else(String::new, |place| format!("{place}: ")))]
+    Data {
+        /// Where; nowhere in the study, if the command line names them.
+        place: Option<Place>,
+        /// Why.
+        #[source]
+        cause: Box<DataError>,
+    },
+    /// It is said how runs are read, but not where they are.
+    #[error(
+        "delimiter, decimal and holdout belong to tables of runs, and none is named; add --data FILE, or data in [model]"
+    )]
+    NoData,
+    /// Runs at any points for a method that needs those of a rule.
+    #[error(
+        "{place}: fit.method = \"{method}\" runs the model at the nodes of a rule, which tables of runs do not have; choose another"
+    )]
+    DataOfQuadrature {
+        /// Where.
+        place: Place,
+        /// The method.
+        method: &'static str,
     },
     /// A unit or label that cannot be shown.
     #[error("{place}: {cause}")]

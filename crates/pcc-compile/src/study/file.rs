@@ -1,6 +1,6 @@
 //! Studies in files.
 
-use super::{Study, StudyError};
+use super::{DataOptions, Study, StudyError};
 use pcc_evaluate::artifact::looks_like_a_surrogate;
 use std::fs::File;
 use std::io::{self, Read};
@@ -59,6 +59,15 @@ impl Study {
     ///
     /// [`StudyFileError`] names the file, and as far as it is a study, key and line.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, StudyFileError> {
+        Self::read_with(path, &DataOptions::default())
+    }
+
+    /// The same with given runs that a command line names.
+    ///
+    /// # Errors
+    ///
+    /// As [`Study::read`].
+    pub fn read_with(path: impl AsRef<Path>, options: &DataOptions) -> Result<Self, StudyFileError> {
         let file = path.as_ref();
         let path = file.display().to_string();
         let mut bytes = Vec::new();
@@ -74,6 +83,6 @@ impl Study {
         }
         let Ok(text) = String::from_utf8(bytes) else { return Err(StudyFileError::NotText { path }) };
         let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Self::from_toml_in(&text, folder).map_err(|cause| StudyFileError::Study { path, cause })
+        Self::from_toml_with(&text, folder, options).map_err(|cause| StudyFileError::Study { path, cause })
     }
 }

@@ -4,7 +4,6 @@ use toml::Spanned;
 
 use super::defaults;
 use super::error::StudyError;
-use super::model::ModelSettings;
 use super::raw::{FitValue, Ordered};
 use super::settings::{Derivatives, Enrich, FitSettings, NAMED_SHARES};
 use super::validate::{Lines, alternatives};
@@ -30,7 +29,7 @@ impl Lines<'_> {
         Ordered(raw): Ordered<FitValue>,
         target: Target,
         inputs: usize,
-        model: &ModelSettings,
+        has_derivatives: bool,
     ) -> Result<FitSettings, StudyError> {
         let find = |name: &str| raw.iter().find(|(key, _)| key == name).map(|(_, value)| value);
         let entry = self.method(find(METHOD), target)?;
@@ -42,7 +41,7 @@ impl Lines<'_> {
         let proportion_tolerance = match find(TOLERANCE) {
             Some(value) => Some(self.tolerance(value, entry)?),
             None => (target == Target::Invariants && entry.grows).then(|| {
-                let with_derivatives = derivatives.are_used(target, model);
+                let with_derivatives = derivatives.are_used(target, has_derivatives);
                 defaults::proportion_tolerance(with_derivatives, entry.name)
             }),
         };
@@ -51,7 +50,7 @@ impl Lines<'_> {
         let settings = raw.iter().filter(|(key, _)| !OF_EVERY_METHOD.contains(&key.as_str()));
         let method = self.settings(entry, settings, inputs)?;
         match derivatives_place {
-            Some(place) if derivatives == Derivatives::Always && !model.has_derivatives() => {
+            Some(place) if derivatives == Derivatives::Always && !has_derivatives => {
                 Err(StudyError::NoDerivatives { place })
             }
             Some(place) if derivatives == Derivatives::Always && !method.can_use_derivatives() => {

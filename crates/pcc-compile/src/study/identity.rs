@@ -8,7 +8,7 @@ use super::{DependenceSettings, Study};
 use crate::fitting::fit::method::Value;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::Margin;
-use pcc_evaluate::foundation::{sha256, sha256_bytes};
+use pcc_evaluate::foundation::{hexadecimal, sha256, sha256_bytes};
 use pcc_evaluate::probability::inputs::Marginal;
 
 pub(super) fn problem_hash(study: &Study) -> String {
@@ -39,6 +39,9 @@ pub(super) fn study_hash(study: &Study) -> String {
     if !fit.shares.is_empty() {
         let names: Vec<&str> = fit.shares.iter().map(|verdict| verdict.name()).collect();
         let _ = writeln!(text, "shares {}", names.join(" "));
+    }
+    if let Some(data) = &study.data {
+        let _ = writeln!(text, "data {} holdout {:?}", hexadecimal(&data.runs.digest()), data.holdout);
     }
     if let Some(tolerance) = fit.proportion_tolerance {
         let _ = writeln!(text, "proportion tolerance {tolerance:?}");

@@ -1,6 +1,7 @@
 //! Studies: what to build a surrogate of, and how. A TOML file becomes a validated problem.
 
 mod column;
+mod data;
 mod defaults;
 mod dependence;
 mod error;
@@ -19,6 +20,7 @@ mod settings;
 mod validate;
 
 pub use column::TableError;
+pub use data::{DataOptions, GivenData, HOLDOUT, is_holdout};
 pub use dependence::{DependenceError, DependenceSettings, Measure};
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
@@ -64,6 +66,8 @@ pub struct Study {
     pub seed: u64,
     /// The model and its constants.
     pub model: ModelSettings,
+    /// Runs that have been made already.
+    pub data: Option<GivenData>,
     /// The uncertain inputs.
     pub inputs: InputSpace,
     /// What was said of their dependence; independent if nothing. The inputs know what follows.
@@ -92,7 +96,16 @@ impl Study {
     ///
     /// As [`Study::from_toml`].
     pub fn from_toml_in(text: &str, folder: &Path) -> Result<Self, StudyError> {
-        validate::study(text, folder)
+        Self::from_toml_with(text, folder, &DataOptions::default())
+    }
+
+    /// The same with given runs that a command line names.
+    ///
+    /// # Errors
+    ///
+    /// As [`Study::from_toml`].
+    pub fn from_toml_with(text: &str, folder: &Path, options: &DataOptions) -> Result<Self, StudyError> {
+        validate::study(text, folder, options)
     }
 
     /// The study as a file with every default filled in and every key explained.
@@ -134,12 +147,18 @@ impl Study {
 
     /// Whether fits use derivatives: asked for, or left open for invariants of a model that has them.
     pub fn uses_derivatives(&self) -> bool {
-        self.fit.use_derivatives(self.spectrum.target, &self.model)
+        self.fit.use_derivatives(self.spectrum.target, self.has_derivatives())
+    }
+
+    /// Whether the model or given runs have derivatives.
+    pub fn has_derivatives(&self) -> bool {
+        self.model.has_derivatives() || self.data.as_ref().is_some_and(|data| data.runs.has_derivatives)
     }
 
     /// Whether it says itself how large the design may become: another number than the default.
     pub fn limits_runs(&self) -> bool {
-        let (inputs, derivatives) = (self.inputs.dimension(), self.uses_derivatives());
+        let given = self.data.as_ref().map_or(0, |data| data.runs.runs.len());
+        let (inputs, derivatives) = ((self.inputs.dimension(), given), self.uses_derivatives());
         let default = defaults::maximum(self.spectrum.target, inputs, derivatives, &self.fit.method);
         self.design.maximum != default.max(self.design.initial)
     }

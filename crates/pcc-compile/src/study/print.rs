@@ -18,7 +18,7 @@ pub(super) fn study(study: &Study) -> String {
     file.line("format", STUDY_FORMAT, "of this file");
     file.line("name", format!("{:?}", study.name), "also names the files built from it");
     file.line("seed", study.seed, "of the design");
-    model::print(&mut file, &study.model);
+    model::print(&mut file, &study.model, study.data.as_ref());
     inputs(&mut file, study);
     dependence(&mut file, study);
 

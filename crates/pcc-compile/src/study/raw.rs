@@ -59,6 +59,10 @@ pub(super) struct Model {
     pub keep: Option<Spanned<String>>,
     pub version: Option<Spanned<String>>,
     pub answers: Option<Spanned<String>>,
+    pub data: Option<Spanned<Files>>,
+    pub delimiter: Option<Spanned<String>>,
+    pub decimal: Option<Spanned<String>>,
+    pub holdout: Option<Spanned<f64>>,
 }
 
 impl Model {
@@ -101,6 +105,14 @@ impl Model {
 pub(super) enum Command {
     Line(String),
     Arguments(Vec<String>),
+}
+
+/// One file, or several.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged, expecting = "write the name of a file, like \"runs.csv\", or a list of names")]
+pub(super) enum Files {
+    One(String),
+    Several(Vec<String>),
 }
 
 /// The value of a helper.

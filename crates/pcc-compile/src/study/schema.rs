@@ -99,7 +99,7 @@ struct Model {
     shell: Option<bool>,
     /// Command: how many runs a process makes.
     mode: Option<Mode>,
-    /// Command and table: number of eigenvalues that each run answers.
+    /// Command and table: number of eigenvalues that each run answers. A table of runs has it, too.
     #[schemars(range(min = 1))]
     eigenvalues: Option<i64>,
     /// Command: processes at once. Default 1.
@@ -121,6 +121,34 @@ struct Model {
     keep: Option<Keep>,
     /// Command, table and function: change it when the model answers otherwise; earlier runs then no longer count.
     version: Option<String>,
+    /// Tables of runs that have been made already, beside the study.
+    data: Option<Files>,
+    /// What separates their columns: comma, semicolon, tab, space, bar or the character. Default: semicolons or tabs if
+    /// the first line has some, else commas.
+    delimiter: Option<String>,
+    /// What their numbers have for a decimal point. Default "point".
+    decimal: Option<Decimal>,
+    /// Share of these runs that no fit sees: they validate the surrogate. Default 0.
+    #[schemars(range(min = 0.0, max = 0.9))]
+    holdout: Option<f64>,
+}
+
+#[derive(JsonSchema)]
+#[schemars(untagged)]
+enum Files {
+    /// One file.
+    One(String),
+    /// Several, whose runs are put together.
+    Several(Vec<String>),
+}
+
+#[derive(JsonSchema)]
+#[schemars(rename_all = "kebab-case")]
+enum Decimal {
+    /// 0.25
+    Point,
+    /// 0,25
+    Comma,
 }
 
 #[derive(JsonSchema)]
@@ -132,7 +160,8 @@ enum Kind {
     Matrices,
     /// A program that computes eigenvalues.
     Command,
-    /// Answers that something else computes, exchanged as tables by `pcc design` and `pcc ingest`.
+    /// Runs that have been made already, and answers that something else computes, exchanged as tables by `pcc design`
+    /// and `pcc ingest`.
     Table,
     /// A function of the program that reads the study, in Python.
     Function,

@@ -1,6 +1,5 @@
 //! The decisions a study records.
 
-use super::model::ModelSettings;
 use crate::fitting::fit::FitMethod;
 use crate::mechanics::spectrum::{Modes, Target};
 use pcc_evaluate::components::{Margin, Verdict};
@@ -104,15 +103,16 @@ impl Enrich {
 }
 
 impl FitSettings {
-    pub(super) fn use_derivatives(&self, target: Target, model: &ModelSettings) -> bool {
-        self.method.can_use_derivatives() && self.derivatives.are_used(target, model)
+    /// Whether derivatives enter the fit, if there are some.
+    pub(super) fn use_derivatives(&self, target: Target, has_derivatives: bool) -> bool {
+        self.method.can_use_derivatives() && self.derivatives.are_used(target, has_derivatives)
     }
 }
 
 /// Whether derivatives of the components by the inputs enter a fit beside the values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Derivatives {
-    /// For invariants, if the model has them.
+    /// For invariants, if the model or given runs have them.
     Auto,
     /// Yes; a model without them is an error.
     Always,
@@ -121,9 +121,9 @@ pub enum Derivatives {
 }
 
 impl Derivatives {
-    pub(super) fn are_used(self, target: Target, model: &ModelSettings) -> bool {
+    pub(super) fn are_used(self, target: Target, has_derivatives: bool) -> bool {
         match self {
-            Self::Auto => target == Target::Invariants && model.has_derivatives(),
+            Self::Auto => target == Target::Invariants && has_derivatives,
             Self::Always => true,
             Self::Never => false,
         }

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use toml::Spanned;
 
+use super::data::{DataOptions, Expected, check_alone};
 use super::dependence::refuse_quadrature;
 use super::error::{Place, StudyError};
 use super::model::Kind;
@@ -33,13 +34,13 @@ const MOST_RIGID: usize = 2_000;
 /// Univariate polynomial values that a design may need: two gigabytes.
 const LARGEST_TABLES: usize = 250_000_000;
 
-pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
+pub(super) fn study(text: &str, folder: &Path, options: &DataOptions) -> Result<Study, StudyError> {
     let lines = Lines { text };
     if let Some(format) = raw::format(text)?.format.filter(|format| *format.get_ref() != i64::from(STUDY_FORMAT)) {
         let place = lines.place("format", &format);
         return Err(StudyError::Format { place, found: format.into_inner(), known: STUDY_FORMAT });
     }
-    let raw = raw::parse(text)?;
+    let mut raw = raw::parse(text)?;
     let name = lines.name(raw.name)?;
     let seed = match raw.seed {
         Some(seed) => lines.integer("seed", seed, 0..=i64::MAX)? as u64,
@@ -56,8 +57,20 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     let dimension = inputs.dimension();
     let spectrum = lines.spectrum(raw.spectrum, kind)?;
     let failure_place = raw.model.on_failure.as_ref().map(|word| lines.place("model.on_failure", word));
-    let model = lines.model(kind, raw.model, &inputs, folder)?;
-    let fit = lines.fit(raw.fit, spectrum.target, dimension, &model)?;
+    let data_place = raw.model.data.as_ref().map(|files| lines.place("model.data", files));
+    let expected = Expected { inputs: &inputs, noise: spectrum.noise };
+    let data = lines.data(&mut raw.model, options, folder, &expected)?;
+    let model = lines.model(kind, raw.model, (&inputs, data.as_ref()), folder)?;
+    if let (Some(data), Kind::Table) = (&data, kind) {
+        check_alone(data, &inputs)
+            .map_err(|cause| StudyError::Data { place: data_place.clone(), cause: Box::new(cause) })?;
+    }
+    let has_derivatives = model.has_derivatives() || data.as_ref().is_some_and(|data| data.runs.has_derivatives);
+    let fit = lines.fit(raw.fit, spectrum.target, dimension, has_derivatives)?;
+    if data.is_some() && fit.method.is_quadrature() {
+        let place = data_place.unwrap_or_else(|| lines.nowhere("model.data"));
+        return Err(StudyError::DataOfQuadrature { place, method: fit.method.name() });
+    }
     if let Some(place) = failure_place.filter(|_| fit.method.is_quadrature() && model.skips_failures()) {
         return Err(StudyError::SkippingOfQuadrature { place });
     }
@@ -70,8 +83,9 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
         let law = inputs.inputs()[at].marginal.name();
         return Err(StudyError::ElementsOfOthers { place: places[at].clone(), law });
     }
-    let derivatives = fit.use_derivatives(spectrum.target, &model);
-    let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
+    let derivatives = fit.use_derivatives(spectrum.target, has_derivatives);
+    let given = data.as_ref().map_or(0, |data| data.runs.runs.len());
+    let design = lines.design(raw.design, spectrum.target, (dimension, given), &fit, derivatives)?;
     let max_degree = fit.method.max_degree();
     let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
     if !fit.method.has_fixed_design() && numbers > LARGEST_TABLES {
@@ -80,7 +94,7 @@ pub(super) fn study(text: &str, folder: &Path) -> Result<Study, StudyError> {
     if derivatives && !fit.method.profile().is_least_squares && design.maximum > MOST_RUNS {
         return Err(StudyError::TooLargeDesign { maximum: design.maximum, most: MOST_RUNS });
     }
-    Ok(Study { name, seed, model, inputs, dependence, spectrum, design, fit })
+    Ok(Study { name, seed, model, data, inputs, dependence, spectrum, design, fit })
 }
 
 /// `"a", "b" or "c"`.
@@ -293,7 +307,7 @@ impl Lines<'_> {
         &self,
         raw: raw::Design,
         target: Target,
-        inputs: usize,
+        (inputs, given): (usize, usize),
         fit: &FitSettings,
         derivatives: bool,
     ) -> Result<DesignSettings, StudyError> {
@@ -310,7 +324,7 @@ impl Lines<'_> {
             _ => {}
         }
         let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
-        let default_maximum = defaults::maximum(target, inputs, derivatives, &fit.method);
+        let default_maximum = defaults::maximum(target, (inputs, given), derivatives, &fit.method);
         let maximum = self.size("design.maximum", raw.maximum, 2, default_maximum)?;
         if let Some(runs) = self.fixed_runs(fit, inputs, derivatives, maximum)? {
             for (key, value) in [("design.initial", raw.initial), ("design.step", raw.step)] {

@@ -6,7 +6,7 @@ use super::modes::Spectrum;
 use super::solution::{Solution, sizes, without_smallest};
 use crate::mechanics::model::SecondOrder;
 use crate::numerics::accuracy::Accuracy;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 use pcc_evaluate::components::OutputKind;
 
 /// Of larger systems a list of modes is reduced alone: what reordering a Schur form costs grows as the third power.
@@ -67,6 +67,45 @@ impl Reductions {
             systems.extend(reduce(&kept.into_iter().map(|at| found[at]).collect::<Vec<_>>()));
         }
         Self { modes, systems }
+    }
+
+    /// What follows from the derivatives of `eigenvalues` by each input, in physical units: one list per eigenvalue. Of
+    /// a pair of which one half is given, the other has the conjugate derivatives. There are no vectors, so that
+    /// nothing is followed by them. `None` if lists differ in length.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use nalgebra::Complex;
+    /// use pcc_compile::mechanics::spectrum::Reductions;
+    /// use pcc_evaluate::components::OutputKind;
+    /// let (lambda, slope) = (Complex::new(-1.0, 10.0), Complex::new(0.5, 2.0));
+    /// let known = Reductions::of_slopes(&[lambda], &[vec![slope]]).expect("one input");
+    /// assert_eq!(known.differentiate(OutputKind::Eigenvalue, &[lambda]), Some(vec![vec![0.5, 2.0]]));
+    /// // λ + λ̄ and |λ|²
+    /// let both = known.differentiate(OutputKind::Closed, &[lambda, lambda.conj()]).expect("with its conjugate");
+    /// assert!((both[0][0] - 1.0).abs() < 1e-12 && (both[0][1] - 39.0).abs() < 1e-12);
+    /// ```
+    pub fn of_slopes(eigenvalues: &[Complex<f64>], slopes: &[Vec<Complex<f64>>]) -> Option<Self> {
+        let conjugates = |list: &[Complex<f64>]| list.iter().map(Complex::conj).collect::<Vec<_>>();
+        let is_alone = |lambda: &Complex<f64>| lambda.im != 0.0 && !eigenvalues.contains(&lambda.conj());
+        let missing: Vec<usize> = (0..eigenvalues.len()).filter(|&k| is_alone(&eigenvalues[k])).collect();
+        let all: Vec<Complex<f64>> =
+            eigenvalues.iter().copied().chain(missing.iter().map(|&k| eigenvalues[k].conj())).collect();
+        let slopes: Vec<Vec<Complex<f64>>> = slopes
+            .iter()
+            .cloned()
+            .chain(missing.iter().map(|&k| conjugates(slopes.get(k).map_or(&[], Vec::as_slice))))
+            .collect();
+        let inputs = slopes.first()?.len();
+        if slopes.len() != all.len() || slopes.iter().any(|list| list.len() != inputs) {
+            return None;
+        }
+        let diagonal = |entries: Vec<Complex<f64>>| DMatrix::from_diagonal(&DVector::from_vec(entries));
+        let derivatives = (0..inputs).map(|j| diagonal(slopes.iter().map(|list| list[j]).collect())).collect();
+        let (right, left) = (DMatrix::zeros(0, all.len()), DMatrix::zeros(all.len(), 0));
+        let system = ReducedSystem::from_parts(all.clone(), diagonal(all), derivatives, right, left)?;
+        Some(Self { modes: Vec::new(), systems: vec![system] })
     }
 
     /// The derivatives of the components of a group ([`ReducedSystem::differentiate`]), from the first system that has

@@ -29,6 +29,10 @@ impl Vectors {
     /// The vectors of `spectrum` from a system that has all of its eigenvalues, or one of each conjugate pair.
     pub(super) fn new(system: &ReducedSystem, spectrum: &Spectrum) -> Option<Self> {
         let (own, states) = (system.eigenvalues(), system.right().nrows());
+        // Derivatives alone have none.
+        if states == 0 {
+            return None;
+        }
         let mut used = vec![false; own.len()];
         let mut take = |lambda: Complex<f64>| {
             let at = nearest((0..own.len()).filter(|&at| is_seen_as(own[at], lambda) && !used[at]), own, lambda)?;

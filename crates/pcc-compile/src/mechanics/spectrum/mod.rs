@@ -23,6 +23,6 @@ pub use free_motion::free_motion;
 pub use groups::{Group, Groups};
 pub use labels::{Labels, Vectors};
 pub use modes::{Spectrum, SpectrumError};
-pub use nearest::nearest;
+pub use nearest::{largest_difference, nearest};
 pub use solution::Solution;
 pub use target::{Modes, Numbers, Target, components, components_of, decompose, output, with_ids};

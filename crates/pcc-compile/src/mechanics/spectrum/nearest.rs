@@ -28,3 +28,17 @@ pub fn nearest(wanted: &[Complex<f64>], among: &[Complex<f64>]) -> Vec<usize> {
     });
     assignment(&distances)
 }
+
+/// The largest difference between eigenvalues, whatever their order, and the largest |λ|; infinite of lists that differ
+/// in length.
+pub fn largest_difference(a: &[Complex<f64>], b: &[Complex<f64>]) -> (f64, f64) {
+    let scale = a.iter().chain(b).map(|lambda| lambda.norm()).fold(0.0, f64::max);
+    let mut left: Vec<Complex<f64>> = b.to_vec();
+    let mut largest = if a.len() == b.len() { 0.0 } else { f64::INFINITY };
+    for lambda in a {
+        let nearest = (0..left.len()).min_by(|&i, &k| (left[i] - lambda).norm().total_cmp(&(left[k] - lambda).norm()));
+        let Some(nearest) = nearest else { break };
+        largest = (left.swap_remove(nearest) - lambda).norm().max(largest);
+    }
+    (largest, scale)
+}

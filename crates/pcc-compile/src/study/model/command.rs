@@ -131,7 +131,7 @@ impl Lines<'_> {
             work_folder: work.map_or(defaults::WORK_FOLDER.to_owned(), Spanned::into_inner),
             keep: keep.transpose()?.unwrap_or(Keep::Failed),
             study_folder: folder.to_owned(),
-            answers: self.table(&mut raw, constants)?,
+            answers: self.table(&mut raw, constants, None)?,
         }))
     }
 }

@@ -11,6 +11,7 @@ pub use command::Command;
 pub use function::{Function, FunctionAnswers};
 pub use table::Table;
 
+use super::data::GivenData;
 use super::error::{Place, StudyError};
 use super::print::{Printer, float};
 use super::raw;
@@ -143,7 +144,7 @@ impl Lines<'_> {
         &self,
         kind: Kind,
         mut raw: raw::Model,
-        inputs: &InputSpace,
+        (inputs, data): (&InputSpace, Option<&GivenData>),
         folder: &Path,
     ) -> Result<ModelSettings, StudyError> {
         self.keys_of_kind(kind, &raw)?;
@@ -152,7 +153,10 @@ impl Lines<'_> {
             Kind::Clutch => Ok(ModelSettings::Clutch { constants }),
             Kind::Matrices => self.description(raw, constants, inputs, folder),
             Kind::Command => self.command(raw, constants, folder),
-            Kind::Table => Ok(ModelSettings::Table(self.table(&mut raw, constants)?)),
+            Kind::Table => {
+                let found = data.map(|data| data.runs.eigenvalues);
+                Ok(ModelSettings::Table(self.table(&mut raw, constants, found)?))
+            }
             Kind::Function => self.function(raw, constants),
         }
     }
@@ -222,7 +226,7 @@ impl Lines<'_> {
     }
 }
 
-pub(super) fn print(file: &mut Printer, model: &ModelSettings) {
+pub(super) fn print(file: &mut Printer, model: &ModelSettings, data: Option<&GivenData>) {
     file.table("model");
     file.line("kind", format!("{:?}", model.kind()), "");
     let constants = match model {
@@ -244,6 +248,9 @@ pub(super) fn print(file: &mut Printer, model: &ModelSettings) {
             &settings.constants
         }
     };
+    if let Some(data) = data {
+        super::data::print(file, data);
+    }
     if !constants.is_empty() {
         file.table("model.constants");
     }
@@ -277,6 +284,6 @@ pub(super) fn identity(model: &ModelSettings, inputs: &InputSpace) -> String {
 }
 
 /// A text as TOML writes it.
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }

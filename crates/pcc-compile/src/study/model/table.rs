@@ -28,15 +28,20 @@ pub struct Table {
 }
 
 impl Lines<'_> {
-    pub(super) fn table(&self, raw: &mut raw::Model, constants: Vec<(String, f64)>) -> Result<Table, StudyError> {
+    /// Given runs may have `found` how many eigenvalues there are.
+    pub(super) fn table(
+        &self,
+        raw: &mut raw::Model,
+        constants: Vec<(String, f64)>,
+        found: Option<usize>,
+    ) -> Result<Table, StudyError> {
         let line = self.place("model.kind", &raw.kind).line;
-        let eigenvalues = raw.eigenvalues.take().ok_or(StudyError::MissingKey {
-            line,
-            key: "eigenvalues",
-            meaning: "how many eigenvalues each run answers",
-        })?;
+        let stated = raw.eigenvalues.take();
+        let stated = stated.map(|count| self.integer("model.eigenvalues", count, 1..=MOST_EIGENVALUES)).transpose()?;
+        let meaning = "how many eigenvalues each run answers";
+        let missing = StudyError::MissingKey { line, key: "eigenvalues", meaning };
         Ok(Table {
-            eigenvalues: self.integer("model.eigenvalues", eigenvalues, 1..=MOST_EIGENVALUES)? as usize,
+            eigenvalues: stated.map(|count| count as usize).or(found).ok_or(missing)?,
             constants,
             version: raw.version.take().map_or(defaults::VERSION.to_owned(), Spanned::into_inner),
             skips_failures: self.skips_failures(raw)?,
