@@ -159,6 +159,43 @@ fn runs_that_leave_out_a_part_of_the_laws_say_so() {
 }
 
 #[test]
+fn of_a_long_table_the_fit_takes_what_a_design_would_and_the_rest_validates_it() {
+    // Nine of ten runs lie in a tenth of the box.
+    let mut runs = points(1, 270, |point| point[0] < 0.05);
+    runs.extend(points(1, 30, |point| point[0] >= 0.05));
+    let surrogate = build(&study(1, &table(1, &runs, false), "\n[design]\nmaximum = 20\n"), &Silent).unwrap();
+    assert_eq!(surrogate.training.counts.values, 20);
+    assert_eq!(setting(&surrogate, "validating_runs"), "Integer(280)");
+    assert!(setting(&surrogate, "uncovered_share").starts_with("Number(0"));
+    // About one in ten of those that are fitted lies in the heap, and the box is that of the runs.
+    let [lower, upper] = surrogate.trained_interval(0).unwrap();
+    assert!(lower < 0.03 && upper > 0.45, "{lower} {upper}");
+    assert!((share(&surrogate) - share(built("clutch-r1"))).abs() < 1e-3);
+}
+
+#[test]
+fn designs_continue_from_a_table() {
+    let folder = folder(12, "data = \"runs.csv\"");
+    let emit = ["design", "rig.toml", "--emit", "rows.csv", "--json"];
+    let asked: Value = serde_json::from_str(&output(folder.path(), &emit)).unwrap();
+    let count = asked["points"].as_u64().unwrap();
+    assert!(count > 2 && asked["complete"] == false, "{asked}");
+    let rows = fs::read_to_string(folder.path().join("rows.csv")).unwrap();
+    let mut answers = "run,mu,k_p,k_f,re_1,im_1,re_2,im_2,re_3,im_3,re_4,im_4\n".to_owned();
+    for row in rows.lines().skip(1) {
+        let point: Vec<f64> = row.split(',').skip(1).map(|cell| cell.parse().unwrap()).collect();
+        let cells: Vec<String> =
+            answer(3, &point).iter().map(|lambda| format!("{:?},{:?}", lambda.re, lambda.im)).collect();
+        let _ = writeln!(answers, "{row},{}", cells.join(","));
+    }
+    fs::write(folder.path().join("answers.csv"), answers).unwrap();
+    output(folder.path(), &["ingest", "rig.toml", "answers.csv"]);
+    let built: Value = serde_json::from_str(&output(folder.path(), &["build", "rig.toml", "--json"])).unwrap();
+    assert_eq!(built["direct_computations"].as_u64(), Some(12 + count), "{built}");
+    assert_eq!((&built["data"]["fitted"], built["reused_runs"].as_u64()), (&12.into(), Some(count)));
+}
+
+#[test]
 fn estimates_are_those_of_the_laws_where_runs_lie_in_a_heap() {
     // Forty runs in a tenth of the box, and ten elsewhere: their residuals alone say what happens there.
     let mut runs = points(3, 40, |point| point[0] < 0.05);

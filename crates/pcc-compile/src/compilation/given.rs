@@ -1,12 +1,13 @@
 //! Runs that somebody has made already: which of them a fit takes, in which levels, and which validate it.
 //!
-//! A share of the runs that the study states is held out, at random. The fit takes the others, but no more than the
-//! design may have. Where there are more, it takes those that lie nearest to the points of the design that a build
+//! A share of the runs that the study states is held out, at random. The fit takes the others, but no more than
+//! [`Study::most_given`]. Where there are more, it takes those that lie nearest to the points of the design that a build
 //! would have asked for, each once: clusters of runs are thinned out, and the fit sees what the inputs' laws ask for.
 //! Runs that it does not take validate it as those do that were held out.
 //!
-//! The runs are taken in two levels, half of them and all of them: what the second half says of a fit to the first is
-//! part of the estimated error, as with a design that has grown.
+//! The last levels are half of the runs and all of them: what the second half says of a fit to the first is part of the
+//! estimated error, as with a design that has grown. Where half is more than a first level of a design, such a level
+//! comes before: on it, methods and groups that are no good are given up at little cost.
 
 use crate::fitting::design::{NestedLatinHypercube, Samples};
 use crate::study::{GivenData, Study};
@@ -44,7 +45,7 @@ impl<'a> GivenLevels<'a> {
         let (validating, mut rest) = answered.split_at(held_out);
         let mut validating = validating.to_vec();
         let taken: Vec<usize>;
-        let most = study.design.maximum.saturating_sub(failed.len());
+        let most = study.most_given();
         if rest.len() > most {
             let chosen = nearest_to_design(study, runs, rest, most, observer)?;
             let mut is_chosen = vec![false; runs.len()];
@@ -55,9 +56,12 @@ impl<'a> GivenLevels<'a> {
         }
         let half = rest.len() / 2;
         let is_one = study.fit.method.has_fixed_design() || half < LEAST_LEVEL;
-        let (first, second) = rest.split_at(if is_one { 0 } else { half });
-        let levels = [first.to_vec(), [second, &failed].concat()];
-        let levels = levels.into_iter().filter(|level| !level.is_empty()).collect();
+        let first = study.design.initial.max(LEAST_LEVEL).min(half);
+        let ends = if is_one { [0, 0, rest.len()] } else { [first, half, rest.len()] };
+        let part = |(start, &end): (usize, &usize)| rest[start..end].to_vec();
+        let mut levels: VecDeque<Vec<usize>> = [0, ends[0], ends[1]].into_iter().zip(&ends).map(part).collect();
+        levels.retain(|level| !level.is_empty());
+        levels.iter_mut().last().into_iter().for_each(|last| last.extend(&failed));
         Ok(Some(Self { data, levels, validating, held_out }))
     }
 

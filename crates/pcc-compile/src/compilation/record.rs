@@ -82,7 +82,11 @@ pub(super) fn surrogate(
     }
     let whole = Mesh::whole(study.inputs.dimension());
     let mut surrogate = new(study, whole, level.outputs.clone(), fitted.iter().map(|fit| &fit.result), training);
-    surrogate.trained_domain = TrainedDomain::of(&study.inputs, level.samples.points());
+    let is_given = evaluations.sizes().given > 0 && evaluations.sizes().design == 0;
+    surrogate.trained_domain = match is_given {
+        true => TrainedDomain::of_given(&study.inputs, level.samples.points()),
+        false => TrainedDomain::of(&study.inputs, level.samples.points()),
+    };
     surrogate.left_out = left_out(evaluations, fitted, masses);
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());

@@ -18,22 +18,22 @@ pub(super) const WORK_FOLDER: &str = "runs";
 /// Of a program that has not begun to answer otherwise.
 pub(super) const VERSION: &str = "1";
 
-/// Given runs that a fit takes: beyond them its matrices cost minutes.
-const MOST_GIVEN: usize = 2_000;
+/// Given runs that a fit takes which solves for as many unknowns as there are equations: with eight inputs and four
+/// modes they take some seconds, and the time grows with the cube of their number.
+pub(super) const MOST_GIVEN: usize = 500;
 
 /// Where the paper's table stops, ten times as many for multi-element expansions, which spend runs on split parents,
 /// too; for invariants, where the matrices of the minimum-norm fit begin to cost minutes: 2000 values, or 3000 values
-/// and derivatives. Runs that are given are taken all the same, up to the former.
-pub(super) fn maximum(target: Target, (inputs, given): (usize, usize), derivatives: bool, method: &FitMethod) -> usize {
-    let own = match (method.profile().design, target) {
+/// and derivatives.
+pub(super) fn maximum(target: Target, inputs: usize, derivatives: bool, method: &FitMethod) -> usize {
+    match (method.profile().design, target) {
         (Design::QuadraturePerElement, _) => 10 * PAPERS_LIMIT as usize,
         (Design::Quadrature | Design::Oversampled(_), _) | (_, Target::Eigenvalues) => PAPERS_LIMIT as usize,
         _ if derivatives => {
             (3_000 / (1 + inputs)).max(initial(target, inputs, derivatives) + step(target, inputs, derivatives))
         }
         _ => 2_000,
-    };
-    own.max(given.min(MOST_GIVEN))
+    }
 }
 
 /// For invariants, of √(p (1 − p)): an error of 0.05 % of a half, half of what the sampling of a million points leaves

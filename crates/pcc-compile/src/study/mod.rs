@@ -157,10 +157,18 @@ impl Study {
 
     /// Whether it says itself how large the design may become: another number than the default.
     pub fn limits_runs(&self) -> bool {
-        let given = self.data.as_ref().map_or(0, |data| data.runs.runs.len());
-        let (inputs, derivatives) = ((self.inputs.dimension(), given), self.uses_derivatives());
+        let (inputs, derivatives) = (self.inputs.dimension(), self.uses_derivatives());
         let default = defaults::maximum(self.spectrum.target, inputs, derivatives, &self.fit.method);
         self.design.maximum != default.max(self.design.initial)
+    }
+
+    /// Given runs that a fit takes at most: as many as the design may have, if the study says how many that is; else no
+    /// more than the method fits in some seconds.
+    pub fn most_given(&self) -> usize {
+        match self.limits_runs() || self.fit.method.profile().is_least_squares {
+            true => self.design.maximum,
+            false => self.design.maximum.min(defaults::MOST_GIVEN),
+        }
     }
 
     /// Hash of the model: its kind, its constants and the names of its inputs, not their distributions. Runs of models

@@ -84,8 +84,7 @@ pub(super) fn study(text: &str, folder: &Path, options: &DataOptions) -> Result<
         return Err(StudyError::ElementsOfOthers { place: places[at].clone(), law });
     }
     let derivatives = fit.use_derivatives(spectrum.target, has_derivatives);
-    let given = data.as_ref().map_or(0, |data| data.runs.runs.len());
-    let design = lines.design(raw.design, spectrum.target, (dimension, given), &fit, derivatives)?;
+    let design = lines.design(raw.design, spectrum.target, dimension, &fit, derivatives)?;
     let max_degree = fit.method.max_degree();
     let numbers = dimension.saturating_mul(usize::from(max_degree) + 1).saturating_mul(design.maximum);
     if !fit.method.has_fixed_design() && numbers > LARGEST_TABLES {
@@ -307,7 +306,7 @@ impl Lines<'_> {
         &self,
         raw: raw::Design,
         target: Target,
-        (inputs, given): (usize, usize),
+        inputs: usize,
         fit: &FitSettings,
         derivatives: bool,
     ) -> Result<DesignSettings, StudyError> {
@@ -324,7 +323,7 @@ impl Lines<'_> {
             _ => {}
         }
         let maximum_place = raw.maximum.as_ref().map(|value| self.place("design.maximum", value));
-        let default_maximum = defaults::maximum(target, (inputs, given), derivatives, &fit.method);
+        let default_maximum = defaults::maximum(target, inputs, derivatives, &fit.method);
         let maximum = self.size("design.maximum", raw.maximum, 2, default_maximum)?;
         if let Some(runs) = self.fixed_runs(fit, inputs, derivatives, maximum)? {
             for (key, value) in [("design.initial", raw.initial), ("design.step", raw.step)] {

@@ -19,8 +19,8 @@ pub(super) fn trained(inputs: &InputSpace, section: Option<v2::Domain>) -> Resul
     let sides = section.inputs.into_iter().map(|side| side.map(|side| [side.lower, side.upper])).collect();
     let found = TrainedDomain::new(inputs, sides);
     ensure("domain", found.is_some(), || {
-        "it needs one interval between finite values for each input whose standardized variable is not uniform, and null \
-         for the others"
+        "it needs one interval between finite values for each input whose standardized variable is not uniform, and \
+         intervals inside [−1, 1] or null for the others"
             .to_owned()
     })?;
     Ok(found)

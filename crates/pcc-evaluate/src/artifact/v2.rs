@@ -112,7 +112,7 @@ pub struct Description {
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
-    /// One per input, in the order of section 2; null where the standardized variable is uniform.
+    /// One per input, in the order of section 2; null where the standardized variable is uniform and runs fill it.
     pub inputs: Vec<Option<TrainedInterval>>,
 }
 

@@ -1,7 +1,8 @@
 //! The box that the model runs of a surrogate spanned.
 //!
-//! Expansions are polynomials in the standardized variables ξ. Runs fill the interval of a uniform ξ up to half a
-//! stratum at either end. Of other variables they leave out the tails: there the surrogate extrapolates.
+//! Expansions are polynomials in the standardized variables ξ. Runs of a design fill the interval of a uniform ξ up to
+//! half a stratum at either end. Of other variables they leave out the tails: there the surrogate extrapolates. Runs that
+//! somebody gave fill nothing but what they span.
 
 use super::Surrogate;
 use crate::probability::inputs::{Input, InputSpace};
@@ -12,7 +13,8 @@ const MOST: f64 = 0.5;
 /// What is foreseen where no run was left out: what hardly moves a share.
 const LITTLE: f64 = 0.01;
 
-/// For every input whose standardized variable is not uniform, the smallest and the largest value at a model run.
+/// For every input whose standardized variable is not uniform, and for every input of runs that were given, the smallest
+/// and the largest value at a model run.
 ///
 /// Intervals are of ξ, in which polynomials are: a sample is compared without rounding.
 ///
@@ -36,31 +38,46 @@ pub struct TrainedDomain {
     sides: Vec<Option<[f64; 2]>>,
 }
 
-/// Whether runs leave out the tails of an input.
+/// Values at the ends of a law may be off by rounding.
+const ROUNDED_ONE: f64 = 1.0 + 1e-6;
+
+/// The smallest and the largest value of each coordinate.
+fn spanned<'r>(inputs: &InputSpace, runs: impl IntoIterator<Item = &'r [f64]>) -> Vec<[f64; 2]> {
+    let mut spanned = vec![[f64::INFINITY, f64::NEG_INFINITY]; inputs.dimension()];
+    for point in runs {
+        for ([lower, upper], &xi) in spanned.iter_mut().zip(point) {
+            (*lower, *upper) = (lower.min(xi), upper.max(xi));
+        }
+    }
+    spanned
+}
+
+/// Whether runs of a design leave out the tails of an input.
 fn has_tails(input: &Input) -> bool {
     !input.marginal.is_divisible()
 }
 
 impl TrainedDomain {
-    /// The box of `runs`, standardized points; `None` without runs, and if all standardized variables are uniform.
+    /// The box of `runs` of a design, standardized points; `None` without runs, and if all standardized variables are
+    /// uniform.
     pub fn of<'r>(inputs: &InputSpace, runs: impl IntoIterator<Item = &'r [f64]>) -> Option<Self> {
-        let mut spanned = vec![[f64::INFINITY, f64::NEG_INFINITY]; inputs.dimension()];
-        for point in runs {
-            for ([lower, upper], &xi) in spanned.iter_mut().zip(point) {
-                (*lower, *upper) = (lower.min(xi), upper.max(xi));
-            }
-        }
-        let sides = inputs.inputs().iter().zip(spanned).map(|(input, side)| has_tails(input).then_some(side));
-        Self::new(inputs, sides.collect())
+        let sides = inputs.inputs().iter().zip(spanned(inputs, runs));
+        Self::new(inputs, sides.map(|(input, side)| has_tails(input).then_some(side)).collect())
     }
 
-    /// The box with these sides, one per input; `None` unless those of inputs with tails, and no others, are intervals
-    /// between finite values, and there is one.
+    /// The box of `runs` that were given, standardized points: it has all sides. `None` without runs.
+    pub fn of_given<'r>(inputs: &InputSpace, runs: impl IntoIterator<Item = &'r [f64]>) -> Option<Self> {
+        Self::new(inputs, spanned(inputs, runs).into_iter().map(Some).collect())
+    }
+
+    /// The box with these sides, one per input; `None` unless they are intervals between finite values, inside [−1, 1]
+    /// where the variable is uniform, of all inputs with tails, and there is one.
     pub fn new(inputs: &InputSpace, sides: Vec<Option<[f64; 2]>>) -> Option<Self> {
         let fits = |(input, side): (&Input, &Option<[f64; 2]>)| match side {
             Some([lower, upper]) => {
                 let ends = [*lower, *upper, input.marginal.physical(*lower), input.marginal.physical(*upper)];
-                has_tails(input) && lower <= upper && ends.iter().all(|end| end.is_finite())
+                let is_inside = has_tails(input) || (*lower >= -ROUNDED_ONE && *upper <= ROUNDED_ONE);
+                is_inside && lower <= upper && ends.iter().all(|end| end.is_finite())
             }
             None => !has_tails(input),
         };
@@ -68,7 +85,7 @@ impl TrainedDomain {
         (is_box && sides.iter().any(Option::is_some)).then_some(Self { sides })
     }
 
-    /// The interval of each input's ξ; `None` where ξ is uniform.
+    /// The interval of each input's ξ; `None` where runs fill it.
     pub fn sides(&self) -> &[Option<[f64; 2]>] {
         &self.sides
     }
@@ -92,14 +109,20 @@ impl Surrogate {
     /// The share of extrapolated samples that errors of runs left out hold already.
     ///
     /// Each input with tails has two outermost runs. A fit without one of these extrapolates to it: of the N errors of
-    /// runs left out, up to two per such input are errors of extrapolation. Quadratures leave none out: there it is
-    /// one percent.
+    /// runs left out, up to two per such input are errors of extrapolation. Runs that were given have outermost ones in
+    /// every input, and where these lie is a matter of chance, up to three standard deviations of so many gaps.
+    /// Quadratures leave none out: there it is one percent.
     pub fn foreseen_extrapolation(&self) -> f64 {
         if self.expansions.iter().all(|expansion| expansion.s2.is_none()) {
             return LITTLE;
         }
-        let tails = self.inputs.inputs().iter().filter(|input| has_tails(input)).count();
-        (2.0 * tails as f64 / self.training.counts.final_mesh.max(1) as f64).min(MOST)
+        let inputs = self.inputs.inputs();
+        let tails = inputs.iter().filter(|input| has_tails(input)).count();
+        let sides = self.trained_domain.as_ref().map_or(&[][..], |domain| &domain.sides);
+        let sides = sides.iter().flatten().count();
+        let outermost = 2.0 * tails.max(sides) as f64;
+        let chance = if sides > tails { 3.0 * outermost.sqrt() } else { 0.0 };
+        ((outermost + chance) / self.training.counts.final_mesh.max(1) as f64).min(MOST)
     }
 }
 
@@ -137,6 +160,16 @@ mod tests {
     }
 
     #[test]
+    fn boxes_of_given_runs_have_all_sides() {
+        let inputs = inputs();
+        let runs: [&[f64]; 2] = [&[0.1, 0.2, -1.0, 0.4], &[-0.3, 0.1, 0.5, -0.2]];
+        let domain = TrainedDomain::of_given(&inputs, runs).unwrap();
+        assert_eq!(domain.sides(), [[-0.3, 0.1], [0.1, 0.2], [-1.0, 0.5], [-0.2, 0.4]].map(Some));
+        assert!(domain.holds(&[0.0, 0.15, 0.0, 0.0]) && !domain.holds(&[0.2, 0.15, 0.0, 0.0]));
+        assert_eq!(TrainedDomain::of_given(&inputs, []), None);
+    }
+
+    #[test]
     fn sides_that_do_not_fit_the_inputs_are_none() {
         let inputs = inputs();
         let [free, side] = [None, Some([-1.0, 1.0])];
@@ -144,7 +177,7 @@ mod tests {
         for wrong in [
             vec![free, free, side],
             vec![free, free, side, free],
-            vec![side, free, side, side],
+            vec![Some([-1.1, 1.0]), free, side, side],
             vec![free, free, Some([1.0, -1.0]), side],
             vec![free, free, Some([f64::NEG_INFINITY, 1.0]), side],
             // exp overflows.

@@ -61,7 +61,7 @@ fn boxes_that_make_no_sense() {
         vec![None],
         vec![None, None],
         vec![None, interval(1.0, -1.0)],
-        vec![interval(-0.5, 0.5), interval(-1.0, 1.0)],
+        vec![interval(-1.5, 0.5), interval(-1.0, 1.0)],
         vec![None, interval(-1.0, 1.0), None],
         vec![None, interval(-1.0, f64::INFINITY)],
         // Physical values overflow.
@@ -70,7 +70,13 @@ fn boxes_that_make_no_sense() {
         let change = |d: &mut v1::Document| d.domain = Some(v2::Domain { inputs: wrong.clone() });
         assert_eq!(section_of(meaning_of(&TRAINED, change)), "domain", "{wrong:?}");
     }
-    // Runs fill uniform laws.
+    // Runs that were given have an interval of every input.
+    let all = TrainedDomain::new(&NORMAL.inputs, vec![Some([-0.5, 0.5]), Some([-1.0, 1.0])]);
+    let given = Surrogate { trained_domain: all.clone(), ..NORMAL.clone() };
+    for format in [Format::Binary, Format::Json] {
+        assert_eq!(decode(&encode(&given, format).unwrap()).unwrap().surrogate.trained_domain, all);
+    }
+    // Runs of a design fill uniform laws.
     let needless = |d: &mut v1::Document| d.domain = Some(v2::Domain { inputs: vec![None, None] });
     assert_eq!(section_of(meaning(needless)), "domain");
 }
