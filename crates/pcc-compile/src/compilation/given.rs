@@ -1,9 +1,9 @@
 //! Runs that somebody has made already: which of them a fit takes, in which levels, and which validate it.
 //!
 //! A share of the runs that the study states is held out, at random. The fit takes the others, but no more than
-//! [`Study::most_given`]. Where there are more, it takes those that lie nearest to the points of the design that a build
-//! would have asked for, each once: clusters of runs are thinned out, and the fit sees what the inputs' laws ask for.
-//! Runs that it does not take validate it as those do that were held out.
+//! [`Study::most_given`]. Where there are more, it takes those that lie nearest to the points of the design that a
+//! build would have asked for, each once: clusters of runs are thinned out, and the fit sees what the inputs' laws ask
+//! for. Runs that it does not take validate it as those do that were held out.
 //!
 //! The last levels are half of the runs and all of them: what the second half says of a fit to the first is part of the
 //! estimated error, as with a design that has grown. Where half is more than a first level of a design, such a level
