@@ -4,7 +4,9 @@ mod clutch;
 pub mod command;
 mod function;
 pub mod matrices;
+mod not_numbers;
 mod parameter;
+mod printable;
 mod second_order;
 mod table;
 

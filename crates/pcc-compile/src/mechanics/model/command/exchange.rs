@@ -2,7 +2,7 @@
 
 use super::error::CommandFailure;
 use super::settings::CommandSettings;
-use super::{folder, printable, process};
+use super::{folder, not_numbers, printable, process};
 use nalgebra::Complex;
 use serde_json::Value;
 use std::fs;
@@ -15,9 +15,6 @@ const RESULTS: &str = "results.json";
 
 /// Bytes of results that are read: a million eigenvalues.
 const LARGEST_RESULTS: u64 = 64 << 20;
-
-/// Words for what is not a number in languages that write them into JSON.
-const NOT_NUMBERS: [&str; 3] = ["nan", "infinity", "inf"];
 
 /// The eigenvalues at `point`, by a process in `folder`.
 pub(super) fn run(
@@ -101,7 +98,7 @@ fn not_json(bytes: &[u8], error: &serde_json::Error) -> CommandFailure {
     if bytes.trim_ascii().is_empty() {
         return CommandFailure::NotJson { cause: "it is empty".to_owned() };
     }
-    if let Some(word) = bare_not_number(&String::from_utf8_lossy(bytes)) {
+    if let Some(word) = not_numbers::bare(&String::from_utf8_lossy(bytes)) {
         return CommandFailure::HoldsNan { word };
     }
     let cause = error.to_string();
@@ -111,32 +108,9 @@ fn not_json(bytes: &[u8], error: &serde_json::Error) -> CommandFailure {
     CommandFailure::NotJson { cause }
 }
 
-/// The first word outside of strings that means what is not a number.
-fn bare_not_number(text: &str) -> Option<String> {
-    let mut outside = String::with_capacity(text.len());
-    let (mut is_inside, mut is_escaped) = (false, false);
-    for character in text.chars() {
-        match character {
-            '"' if !is_escaped => is_inside = !is_inside,
-            _ if !is_inside => outside.push(character),
-            _ => {}
-        }
-        is_escaped = is_inside && character == '\\' && !is_escaped;
-    }
-    let mut words = outside.split(|character: char| !character.is_alphanumeric());
-    words.find(|word| NOT_NUMBERS.iter().any(|name| word.eq_ignore_ascii_case(name))).map(str::to_owned)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn words_in_strings_are_not_numbers() {
-        assert_eq!(bare_not_number(r#"{"NaN": "\"NaN", "x": [1, -Infinity"#).as_deref(), Some("Infinity"));
-        assert_eq!(bare_not_number(r#"{"NaN": "inf", "x": nanometre"#), None);
-        assert_eq!(bare_not_number(r#"{"\\": nan"#).as_deref(), Some("nan"));
-    }
 
     #[test]
     fn every_kind_of_wrong_results_is_told_apart() {

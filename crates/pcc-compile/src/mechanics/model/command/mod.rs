@@ -18,7 +18,6 @@ mod command_line;
 mod error;
 mod exchange;
 mod folder;
-mod printable;
 mod process;
 mod result_columns;
 pub mod results_table;
@@ -28,6 +27,7 @@ mod table_error;
 #[cfg(all(test, unix))]
 mod tests;
 
+use super::{not_numbers, printable};
 pub use error::{CommandError, CommandFailure};
 pub use settings::{CommandSettings, Keep, Mode};
 
