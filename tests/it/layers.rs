@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the evaluator must not pull in: it is deployed where no model is built and nobody types.
-const NOT_IN_THE_EVALUATOR: [&str; 8] =
-    ["anyhow", "clap", "csv", "indicatif", "nalgebra", "pcc-compile", "pcc-expressions", "toml"];
+const NOT_IN_THE_EVALUATOR: [&str; 10] =
+    ["anyhow", "clap", "csv", "httparse", "indicatif", "nalgebra", "pcc-compile", "pcc-expressions", "toml", "ureq"];
 
 /// Packages that the evaluator may pull in, itself included.
 const MOST_PACKAGES: usize = 55;

@@ -77,7 +77,10 @@ fn printed_studies_are_valid() {
             pcc_compile::compilation::build(&study, &pcc_evaluate::foundation::Silent).unwrap();
         }
     }
-    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), ["clutch", "command", "function", "matrices", "table"]);
+    assert_eq!(
+        kinds.into_iter().collect::<Vec<_>>(),
+        ["clutch", "command", "function", "matrices", "table", "um-bridge"]
+    );
 }
 
 /// A folder with the tables that a page shows.

@@ -1,8 +1,8 @@
 //! What is recorded of model runs, where, and what of it is used again: one policy for every face.
 //!
-//! Runs of programs are recorded unless the user forbids it. Runs of `pcc`'s own models are recorded while a build
-//! lasts, so that an interrupted one can go on, and thrown away with it unless somebody asked for the journal or it
-//! took long to fill.
+//! Runs of programs and servers are recorded unless the user forbids it. Runs of `pcc`'s own models are recorded while a
+//! build lasts, so that an interrupted one can go on, and thrown away with it unless somebody asked for the journal or
+//! it took long to fill.
 
 use super::journal::{Contents, Journal, JournalError};
 use super::ledger::{Campaign, Ledger};
@@ -202,7 +202,9 @@ impl Books {
     pub fn of_sampling(study: &Study, recording: &Recording) -> Result<Self, RecordingError> {
         match study.model {
             ModelSettings::Table(_) => Err(RecordingError::NotRun),
-            ModelSettings::Command(_) => Ok(Self::open(study, recording, Some(journal_here(study)))?),
+            ModelSettings::Command(_) | ModelSettings::UmBridge(_) => {
+                Ok(Self::open(study, recording, Some(journal_here(study)))?)
+            }
             _ => Ok(Self::open(study, recording, None)?),
         }
     }

@@ -146,7 +146,9 @@ pub enum StudyError {
         law: &'static str,
     },
     /// Derivatives of a model that has none.
-    #[error("{place}: programs and tables answer eigenvalues alone, so there are no derivatives; remove the key")]
+    #[error(
+        "{place}: programs, servers and tables answer eigenvalues alone, so there are no derivatives; remove the key"
+    )]
     NoDerivatives {
         /// Where.
         place: Place,

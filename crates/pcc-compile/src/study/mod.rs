@@ -24,7 +24,7 @@ pub use data::{DataOptions, GivenData, HOLDOUT, is_holdout};
 pub use dependence::{DependenceError, DependenceSettings, Measure};
 pub use error::{Place, StudyError};
 pub use file::StudyFileError;
-pub use model::{Command, Function, FunctionAnswers, ModelSettings, Table};
+pub use model::{Attempts, Command, Function, FunctionAnswers, ModelSettings, Table, UmBridge};
 #[cfg(feature = "schema")]
 pub use schema::schema;
 pub use settings::{Derivatives, DesignKind, DesignSettings, Enrich, FitSettings, NAMED_SHARES, SpectrumSettings};
@@ -129,6 +129,7 @@ impl Study {
             ModelSettings::Command(command) => Ok(Box::new(command.program(&uncertain))),
             ModelSettings::Table(_) => Ok(Box::new(TableModel)),
             ModelSettings::Function(function) => Ok(Box::new(function.model())),
+            ModelSettings::UmBridge(server) => Ok(Box::new(server.server(&uncertain))),
         }
     }
 

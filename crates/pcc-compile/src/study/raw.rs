@@ -63,6 +63,10 @@ pub(super) struct Model {
     pub delimiter: Option<Spanned<String>>,
     pub decimal: Option<Spanned<String>>,
     pub holdout: Option<Spanned<f64>>,
+    pub url: Option<Spanned<String>>,
+    pub name: Option<Spanned<String>>,
+    pub config: Option<Spanned<toml::Table>>,
+    pub parameters: Option<Spanned<Vec<String>>>,
 }
 
 impl Model {
@@ -91,6 +95,10 @@ impl Model {
             ("on_failure", start(&self.on_failure)),
             ("version", start(&self.version)),
             ("answers", start(&self.answers)),
+            ("url", start(&self.url)),
+            ("name", start(&self.name)),
+            ("config", start(&self.config)),
+            ("parameters", start(&self.parameters)),
         ];
         keys.into_iter().filter_map(|(key, start)| Some((key, start?))).collect()
     }
@@ -350,7 +358,7 @@ pub(super) fn parse(text: &str) -> Result<Study, StudyError> {
 
 /// The parser's message with its excerpt of the file, in words of the file instead of words of the program.
 fn syntax(error: toml::de::Error) -> StudyError {
-    const WORDS: [(&str, &str); 10] = [
+    const WORDS: [(&str, &str); 11] = [
         ("missing field", "missing key"),
         ("unknown field", "unknown key"),
         ("expected i64", "expected a whole number"),
@@ -358,6 +366,7 @@ fn syntax(error: toml::de::Error) -> StudyError {
         ("expected struct Input", "expected a table like { distribution = \"uniform\", lower = 0.0, upper = 1.0 }"),
         ("expected struct", "expected a table"),
         ("expected a sequence", "expected a list"),
+        ("expected a map", "expected a table"),
         ("expected a string", "expected a text in quotes"),
         ("floating point", "number"),
         (" as i128", ""),

@@ -99,27 +99,28 @@ struct Model {
     shell: Option<bool>,
     /// Command: how many runs a process makes.
     mode: Option<Mode>,
-    /// Command and table: number of eigenvalues that each run answers. A table of runs has it, too.
+    /// Command, table and um-bridge: number of eigenvalues that each run answers. A table of runs has it, too.
     #[schemars(range(min = 1))]
     eigenvalues: Option<i64>,
-    /// Command: processes at once. Default 1.
+    /// Command and um-bridge: processes or requests at once. Default 1.
     #[schemars(range(min = 1))]
     jobs: Option<i64>,
-    /// Command: time after which a process is stopped, in s. Default: none.
+    /// Command and um-bridge: time after which a process is stopped, or a request given up, in s. Default: none.
     #[schemars(extend("exclusiveMinimum" = 0))]
     timeout: Option<f64>,
-    /// Command: further attempts at a run that failed. Default 0.
+    /// Command and um-bridge: further attempts at a run that failed. Default 0.
     #[schemars(range(min = 0))]
     retries: Option<i64>,
     /// Function: what it answers. Default "matrices".
     answers: Option<FunctionAnswers>,
-    /// Command, table and function: what becomes of runs that fail.
+    /// Command, table, function and um-bridge: what becomes of runs that fail.
     on_failure: Option<OnFailure>,
     /// Command: folder for the folders of runs, in the current one. Default "runs".
     work: Option<String>,
     /// Command: which folders of runs are kept.
     keep: Option<Keep>,
-    /// Command, table and function: change it when the model answers otherwise; earlier runs then no longer count.
+    /// Command, table, function and um-bridge: change it when the model answers otherwise; earlier runs then no longer
+    /// count.
     version: Option<String>,
     /// Tables of runs that have been made already, beside the study.
     data: Option<Files>,
@@ -131,6 +132,15 @@ struct Model {
     /// Share of these runs that no fit sees: they validate the surrogate. Default 0.
     #[schemars(range(min = 0.0, max = 0.9))]
     holdout: Option<f64>,
+    /// Um-bridge: where the server is, like "http://localhost:4242".
+    url: Option<String>,
+    /// Um-bridge: name of the model, as the server lists it.
+    name: Option<String>,
+    /// Um-bridge: handed on with every request. Default: empty.
+    config: Option<BTreeMap<String, Value>>,
+    /// Um-bridge: names of inputs and constants in the order in which the model takes them. Default: the inputs in their
+    /// order.
+    parameters: Option<Vec<String>>,
 }
 
 #[derive(JsonSchema)]
@@ -165,6 +175,8 @@ enum Kind {
     Table,
     /// A function of the program that reads the study, in Python.
     Function,
+    /// A model on a server that speaks UM-Bridge.
+    UmBridge,
 }
 
 #[derive(JsonSchema)]

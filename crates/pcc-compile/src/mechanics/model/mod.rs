@@ -9,6 +9,7 @@ mod parameter;
 mod printable;
 mod second_order;
 mod table;
+pub mod um_bridge;
 
 pub use clutch::{CLUTCH_PARAMETERS, Clutch};
 pub use function::FunctionModel;
@@ -21,6 +22,7 @@ use command::{CommandError, CommandFailure};
 use matrices::MatricesError;
 use nalgebra::Complex;
 use thiserror::Error;
+use um_bridge::{UmBridgeError, UmBridgeFailure};
 
 /// Why a model could not be set up or run.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -57,6 +59,9 @@ pub enum ModelError {
     /// A program of the user's gave no answer.
     #[error(transparent)]
     Command(Box<CommandError>),
+    /// A server gave no answer.
+    #[error(transparent)]
+    UmBridge(Box<UmBridgeError>),
     /// Answers come in tables.
     #[error(
         "models of kind \"table\" are not run by pcc: write the points with pcc design STUDY --emit rows.csv, run them, and hand the \
@@ -101,21 +106,36 @@ impl From<CommandError> for ModelError {
     }
 }
 
+impl From<UmBridgeError> for ModelError {
+    fn from(error: UmBridgeError) -> Self {
+        Self::UmBridge(Box::new(error))
+    }
+}
+
 impl ModelError {
     /// Whether the model was run and failed, and not what it takes to run it.
     pub fn is_of_run(&self) -> bool {
-        !matches!(self, Self::Command(error) if error.failure.is_of_machine())
+        match self {
+            Self::Command(error) => !error.failure.is_of_machine(),
+            Self::UmBridge(error) => error.is_of_run,
+            _ => true,
+        }
     }
 
     /// Whether something else than the model ended the run: another attempt may go well.
     pub fn is_by_circumstances(&self) -> bool {
-        matches!(self, Self::Command(error) if matches!(error.failure, CommandFailure::Signal { .. }))
+        match self {
+            Self::Command(error) => matches!(error.failure, CommandFailure::Signal { .. }),
+            Self::UmBridge(error) => matches!(error.failure, UmBridgeFailure::Closed { .. }),
+            _ => false,
+        }
     }
 
     /// How often a run was tried before this was its end.
     pub fn attempts(&self) -> u32 {
         match self {
             Self::Command(error) => error.attempts,
+            Self::UmBridge(error) => error.attempts,
             _ => 1,
         }
     }

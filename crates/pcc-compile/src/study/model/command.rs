@@ -1,22 +1,18 @@
 //! Models that are programs.
 
-use super::{ModelSettings, Table, quoted, table};
+use super::{Attempts, ModelSettings, Table, attempts, quoted, table};
 use crate::mechanics::model::command::{CommandModel, CommandSettings, Keep, Mode};
 use crate::study::defaults;
 use crate::study::error::StudyError;
-use crate::study::print::{Printer, float};
+use crate::study::print::Printer;
 use crate::study::raw;
 use crate::study::validate::Lines;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 use toml::Spanned;
 
 /// The keys that say how a program is run; what it answers has those of tables.
-pub(super) const KEYS: [&str; 8] = ["command", "shell", "mode", "jobs", "timeout", "retries", "work", "keep"];
-
-/// More processes at once are a mistake.
-const MOST_JOBS: i64 = 10_000;
+pub(super) const KEYS: [&str; 5] = ["command", "shell", "mode", "work", "keep"];
 
 /// A program that answers eigenvalues.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,12 +25,8 @@ pub struct Command {
     pub mode: Mode,
     /// What is asked and answered.
     pub answers: Table,
-    /// Processes that go on at once, at least 1.
-    pub jobs: usize,
-    /// Seconds after which a process is stopped.
-    pub timeout: Option<f64>,
-    /// Further attempts at a run that failed.
-    pub retries: u32,
+    /// How many processes go on at once, and how long.
+    pub attempts: Attempts,
     /// Where the folders of runs are.
     pub work_folder: String,
     /// Which of them are kept.
@@ -50,9 +42,9 @@ impl Command {
             command: self.arguments.clone(),
             shell: self.shell,
             mode: self.mode,
-            jobs: self.jobs,
-            timeout: self.timeout.map(Duration::from_secs_f64),
-            retries: self.retries,
+            jobs: self.attempts.jobs,
+            timeout: self.attempts.limit(),
+            retries: self.attempts.retries,
             eigenvalues: self.answers.eigenvalues,
             work_folder: PathBuf::from(&self.work_folder),
             keep: self.keep,
@@ -100,17 +92,6 @@ impl Lines<'_> {
             let (place, argument) = (self.place("model.command", &arguments), argument.clone());
             return Err(StudyError::FileBesideStudy { place, argument });
         }
-        let whole = |key, value: Option<Spanned<i64>>, range, default| {
-            value.map_or(Ok(default), |value| self.integer(key, value, range))
-        };
-        let timeout = match raw.timeout.take() {
-            None => None,
-            timeout => {
-                let expected = "a number of seconds above 0 and at most 1e9";
-                let holds = |value| value > 0.0 && value <= 1e9;
-                Some(self.number("model.timeout", timeout, 0.0, expected, holds)?)
-            }
-        };
         let mode = raw
             .mode
             .as_ref()
@@ -125,9 +106,7 @@ impl Lines<'_> {
             arguments: arguments.into_inner(),
             shell,
             mode: mode.transpose()?.unwrap_or(Mode::Each),
-            jobs: whole("model.jobs", raw.jobs.take(), 1..=MOST_JOBS, defaults::JOBS)? as usize,
-            timeout,
-            retries: whole("model.retries", raw.retries.take(), 0..=1000, 0)? as u32,
+            attempts: self.attempts(&mut raw)?,
             work_folder: work.map_or(defaults::WORK_FOLDER.to_owned(), Spanned::into_inner),
             keep: keep.transpose()?.unwrap_or(Keep::Failed),
             study_folder: folder.to_owned(),
@@ -147,12 +126,7 @@ pub(super) fn print(file: &mut Printer, settings: &Command) {
         Mode::Batch => ("batch", "a process for many runs: points.csv in, results.csv out; or \"each\""),
     };
     file.line("mode", format!("{mode:?}"), meaning);
-    file.line("jobs", settings.jobs, "processes at once");
-    match settings.timeout {
-        Some(seconds) => file.line("timeout", float(seconds), "seconds after which a process is stopped"),
-        None => file.line("# timeout", "600.0", "seconds after which a process is stopped; no limit unless written"),
-    }
-    file.line("retries", settings.retries, "further attempts at a run that failed");
+    attempts::print(file, &settings.attempts, "processes", "a process is stopped");
     file.line("work", quoted(&settings.work_folder), "folder for the folders of runs");
     let keep = match settings.keep {
         Keep::Failed => "failed",

@@ -1,15 +1,19 @@
 //! The model of a study. Every kind is a file: the keys it has, and how it is read, printed and hashed. A new kind is a
 //! file here, a variant of [`ModelSettings`] and of [`Kind`], and the lines below that name all kinds.
 
+mod attempts;
 mod clutch;
 mod command;
 mod function;
 mod matrices;
 mod table;
+mod um_bridge;
 
+pub use attempts::Attempts;
 pub use command::Command;
 pub use function::{Function, FunctionAnswers};
 pub use table::Table;
+pub use um_bridge::UmBridge;
 
 use super::data::GivenData;
 use super::error::{Place, StudyError};
@@ -43,6 +47,8 @@ pub enum ModelSettings {
     Table(Table),
     /// A function of the program that reads the study.
     Function(Function),
+    /// A model on a server.
+    UmBridge(UmBridge),
 }
 
 /// Kinds of models.
@@ -53,14 +59,16 @@ pub(super) enum Kind {
     Command,
     Table,
     Function,
+    UmBridge,
 }
 
-const KINDS: [(&str, Kind); 5] = [
+const KINDS: [(&str, Kind); 6] = [
     ("clutch", Kind::Clutch),
     ("matrices", Kind::Matrices),
     ("command", Kind::Command),
     ("table", Kind::Table),
     ("function", Kind::Function),
+    ("um-bridge", Kind::UmBridge),
 ];
 
 impl Kind {
@@ -69,9 +77,10 @@ impl Kind {
         match self {
             Self::Clutch => false,
             Self::Matrices => matrices::KEYS.contains(&key),
-            Self::Command => command::KEYS.contains(&key) || table::KEYS.contains(&key),
+            Self::Command => [&command::KEYS[..], &attempts::KEYS, &table::KEYS].concat().contains(&key),
             Self::Table => table::KEYS.contains(&key),
             Self::Function => function::KEYS.contains(&key),
+            Self::UmBridge => [&um_bridge::KEYS[..], &attempts::KEYS, &table::KEYS].concat().contains(&key),
         }
     }
 
@@ -79,7 +88,7 @@ impl Kind {
     pub fn default_target(self) -> Target {
         match self {
             Self::Clutch => Target::Eigenvalues,
-            Self::Matrices | Self::Command | Self::Table | Self::Function => Target::Invariants,
+            Self::Matrices | Self::Command | Self::Table | Self::Function | Self::UmBridge => Target::Invariants,
         }
     }
 }
@@ -93,6 +102,7 @@ impl ModelSettings {
             Self::Command(_) => "command",
             Self::Table(_) => "table",
             Self::Function(_) => "function",
+            Self::UmBridge(_) => "um-bridge",
         }
     }
 
@@ -103,25 +113,27 @@ impl ModelSettings {
             Self::Command(command) => command.answers.skips_failures,
             Self::Table(table) => table.skips_failures,
             Self::Function(function) => function.skips_failures,
+            Self::UmBridge(server) => server.answers.skips_failures,
         }
     }
 
-    /// Whether a run is a program's or an unknown function's, which may take hours. Of matrices pcc computes the
+    /// Whether a run is a program's, a server's or an unknown function's, which may take hours. Of matrices pcc computes the
     /// eigenvalues itself, whoever assembles them.
     pub fn is_external(&self) -> bool {
         match self {
             Self::Clutch { .. } | Self::Matrices(_) => false,
-            Self::Command(_) | Self::Table(_) => true,
+            Self::Command(_) | Self::Table(_) | Self::UmBridge(_) => true,
             Self::Function(function) => function.answers == FunctionAnswers::Eigenvalues,
         }
     }
 
-    /// What runs of programs and tables answer.
+    /// What runs of programs, servers and tables answer.
     pub fn answers(&self) -> Option<&Table> {
         match self {
             Self::Clutch { .. } | Self::Matrices(_) | Self::Function(_) => None,
             Self::Command(command) => Some(&command.answers),
             Self::Table(table) => Some(table),
+            Self::UmBridge(server) => Some(&server.answers),
         }
     }
 
@@ -129,7 +141,7 @@ impl ModelSettings {
     pub fn has_derivatives(&self) -> bool {
         match self {
             Self::Clutch { .. } | Self::Matrices(_) => true,
-            Self::Command(_) | Self::Table(_) => false,
+            Self::Command(_) | Self::Table(_) | Self::UmBridge(_) => false,
             Self::Function(function) => function.answers == FunctionAnswers::Matrices,
         }
     }
@@ -158,6 +170,7 @@ impl Lines<'_> {
                 Ok(ModelSettings::Table(self.table(&mut raw, constants, found)?))
             }
             Kind::Function => self.function(raw, constants),
+            Kind::UmBridge => self.um_bridge(raw, constants, inputs),
         }
     }
 
@@ -188,7 +201,7 @@ impl Lines<'_> {
         }
         let is_first = |c: char| c.is_alphabetic() || c == '_';
         let is_name = name.starts_with(is_first) && name.chars().all(|c| is_first(c) || c.is_ascii_digit());
-        if matches!(kind, Kind::Command | Kind::Table) && check_names([&name.to_owned()]).is_err() {
+        if matches!(kind, Kind::Command | Kind::Table | Kind::UmBridge) && check_names([&name.to_owned()]).is_err() {
             return Err(StudyError::ReservedName { place: self.place(format!("{table}.{name}"), value) });
         }
         if is_name && name.chars().count() <= LONGEST_NAME {
@@ -247,6 +260,10 @@ pub(super) fn print(file: &mut Printer, model: &ModelSettings, data: Option<&Giv
             function::print(file, settings);
             &settings.constants
         }
+        ModelSettings::UmBridge(settings) => {
+            um_bridge::print(file, settings);
+            &settings.answers.constants
+        }
     };
     if let Some(data) = data {
         super::data::print(file, data);
@@ -279,6 +296,7 @@ pub(super) fn identity(model: &ModelSettings, inputs: &InputSpace) -> String {
         ModelSettings::Command(command) => command::identify(&mut text, command),
         ModelSettings::Table(table) => table::identify(&mut text, table),
         ModelSettings::Function(function) => function::identify(&mut text, function),
+        ModelSettings::UmBridge(server) => um_bridge::identify(&mut text, server, inputs),
     }
     text
 }
