@@ -39,6 +39,7 @@ mod error;
 pub mod report;
 #[doc(hidden)]
 pub mod reproduce;
+mod serve;
 
 pub use error::Error;
 

@@ -4,7 +4,7 @@ use super::commands::{build, convert, man, report, reproduce, run, version};
 use super::points::PointsReport;
 use crate::report::{
     BuildReport, CertifyPlanReport, CertifyReport, CompareReport, DesignReport, EvalReport, IngestReport,
-    InspectReport, JournalReport, MergeReport, ModesReport, PartReport, SweepReport,
+    InspectReport, JournalReport, MergeReport, ModesReport, PartReport, ServeReport, SweepReport,
 };
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
@@ -88,6 +88,7 @@ pub fn schemas() -> Vec<(&'static str, String)> {
         ("report", schema::<report::Written>()),
         ("reproduce", schema::<reproduce::Reproduced>()),
         ("run", schema::<run::RunReport>()),
+        ("serve", schema::<ServeReport>()),
         ("version", schema::<version::Version>()),
     ]
 }

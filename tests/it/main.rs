@@ -43,4 +43,5 @@ mod questions;
 mod rare;
 mod shipped;
 mod table2;
+mod um_bridge;
 mod wide;

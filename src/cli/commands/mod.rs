@@ -37,6 +37,7 @@ commands! {
     Certify: certify,
     Inspect: inspect,
     Report: report,
+    Serve: serve,
     Reproduce: reproduce,
     Convert: convert,
     Completions: completions,
