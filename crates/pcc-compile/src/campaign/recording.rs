@@ -1,8 +1,8 @@
 //! What is recorded of model runs, where, and what of it is used again: one policy for every face.
 //!
-//! Runs of programs and servers are recorded unless the user forbids it. Runs of `pcc`'s own models are recorded while a
-//! build lasts, so that an interrupted one can go on, and thrown away with it unless somebody asked for the journal or
-//! it took long to fill.
+//! Runs of programs and servers are recorded unless the user forbids it. Runs of `pcc`'s own models are recorded while
+//! a build lasts, so that an interrupted one can go on, and thrown away with it unless somebody asked for the journal
+//! or it took long to fill.
 
 use super::journal::{Contents, Journal, JournalError};
 use super::ledger::{Campaign, Ledger};
