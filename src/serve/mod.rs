@@ -1,9 +1,9 @@
 //! A surrogate as models that other programs ask over HTTP, by the protocol UM-Bridge, version 1.0:
 //! <https://um-bridge-benchmarks.readthedocs.io/en/docs/>.
 //!
-//! `models` are what is offered, `protocol` makes an answer of a request, `http` reads requests and writes answers within
-//! limits, `connections` accepts clients, bounds their number and ends them. HTTP is written here because servers of
-//! small crates leave open what a client may cost: how long its lines are, how long it waits, how many there are.
+//! `models` are what is offered, `protocol` makes an answer of a request, `http` reads requests and writes answers
+//! within limits, `connections` accepts clients, bounds their number and ends them. HTTP is written here because small
+//! crates for it leave open what a client may cost: how long its lines are, how long it waits, how many there are.
 
 mod connections;
 mod http;

@@ -237,31 +237,39 @@ fn what_is_no_request_is_refused_and_the_server_stays() {
     });
 }
 
+/// Sends `start`, and then `piece` again and again, drop by drop: it is the whole that may take so long.
+fn drip(address: SocketAddr, start: &str, piece: &str) {
+    let mut stream = connect(address);
+    stream.write_all(start.as_bytes()).unwrap();
+    let begin = Instant::now();
+    while begin.elapsed() < 2 * LIMITS.patience && stream.write_all(piece.as_bytes()).is_ok() {
+        thread::sleep(LIMITS.patience / 8);
+    }
+    let mut found = [0; 12];
+    stream.read_exact(&mut found).unwrap();
+    assert_eq!(&found, b"HTTP/1.1 408");
+}
+
+/// Asks, and does not read: the answers fill what the system keeps for the client, and then nothing is taken any more.
+fn ask_and_not_read(address: SocketAddr) {
+    let mut deaf = connect(address);
+    deaf.set_write_timeout(Some(4 * LIMITS.patience)).unwrap();
+    let question = request("POST", "/ModelInfo", "{}").repeat(100);
+    let begin = Instant::now();
+    while deaf.write_all(question.as_bytes()).is_ok() {
+        assert!(begin.elapsed() < Duration::from_secs(30), "it is served for ever");
+    }
+}
+
 #[test]
 fn slow_clients_are_ended() {
     serving(|address| {
-        // Says nothing at all, and is told nothing.
-        assert_eq!(rest(connect(address)), "");
-        for (start, drop) in [("GET /In", "f"), ("POST /Evaluate HTTP/1.1\r\nContent-Length: 99\r\n\r\n", " ")] {
-            let mut stream = connect(address);
-            stream.write_all(start.as_bytes()).unwrap();
-            let begin = Instant::now();
-            // Drop by drop: it is the whole that may take so long.
-            while begin.elapsed() < 2 * LIMITS.patience && stream.write_all(drop.as_bytes()).is_ok() {
-                thread::sleep(LIMITS.patience / 8);
-            }
-            let mut found = [0; 12];
-            stream.read_exact(&mut found).unwrap();
-            assert_eq!(&found, b"HTTP/1.1 408");
-        }
-        // Asks, and does not read: the answers fill what the system keeps for it.
-        let mut deaf = connect(address);
-        deaf.set_write_timeout(Some(4 * LIMITS.patience)).unwrap();
-        let question = request("POST", "/ModelInfo", "{}").repeat(100);
-        let begin = Instant::now();
-        while deaf.write_all(question.as_bytes()).is_ok() {
-            assert!(begin.elapsed() < Duration::from_secs(20), "it is served for ever");
-        }
+        thread::scope(|scope| {
+            scope.spawn(|| assert_eq!(rest(connect(address)), "", "who says nothing is told nothing"));
+            scope.spawn(|| drip(address, "GET /In", "f"));
+            scope.spawn(|| drip(address, "POST /Evaluate HTTP/1.1\r\nContent-Length: 99\r\n\r\n", " "));
+            scope.spawn(|| ask_and_not_read(address));
+        });
         assert_eq!(asked(address, "/InputSizes", &json!({ "name": "max_re" })), json!({ "inputSizes": [2] }));
     });
 }

@@ -32,8 +32,8 @@ impl<'s> Timed<'s> {
         }
     }
 
-    /// Writes all of `bytes` until `deadline`. What is answered already goes out even if the server is to end, as far as
-    /// the client takes it at once.
+    /// Writes all of `bytes` until `deadline`. What is answered already goes out even if the server is to end, as far
+    /// as the client takes it at once.
     pub fn write_all(&mut self, mut bytes: &[u8], deadline: Instant) -> io::Result<()> {
         self.stream.set_write_timeout(Some(TICK))?;
         while !bytes.is_empty() {

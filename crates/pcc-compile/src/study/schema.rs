@@ -138,8 +138,8 @@ struct Model {
     name: Option<String>,
     /// Um-bridge: handed on with every request. Default: empty.
     config: Option<BTreeMap<String, Value>>,
-    /// Um-bridge: names of inputs and constants in the order in which the model takes them. Default: the inputs in their
-    /// order.
+    /// Um-bridge: names of inputs and constants in the order in which the model takes them. Default: the inputs in
+    /// their order.
     parameters: Option<Vec<String>>,
 }
 

@@ -117,8 +117,8 @@ impl ModelSettings {
         }
     }
 
-    /// Whether a run is a program's, a server's or an unknown function's, which may take hours. Of matrices pcc computes the
-    /// eigenvalues itself, whoever assembles them.
+    /// Whether a run is a program's, a server's or an unknown function's, which may take hours. Of matrices pcc
+    /// computes the eigenvalues itself, whoever assembles them.
     pub fn is_external(&self) -> bool {
         match self {
             Self::Clutch { .. } | Self::Matrices(_) => false,

@@ -1,8 +1,8 @@
 //! Servers as models: an HTTP server that speaks UM-Bridge is asked for the eigenvalues at every point.
 //!
-//! The protocol, version 1.0, is JSON over HTTP: <https://um-bridge-benchmarks.readthedocs.io/en/docs/>. Before the first
-//! run the server says whether it has the model, and how many numbers that takes and answers (`Info`, `ModelInfo`,
-//! `InputSizes`, `OutputSizes`). A run is one `Evaluate`:
+//! The protocol, version 1.0, is JSON over HTTP: <https://um-bridge-benchmarks.readthedocs.io/en/docs/>. Before the
+//! first run the server says whether it has the model, and how many numbers that takes and answers (`Info`,
+//! `ModelInfo`, `InputSizes`, `OutputSizes`). A run is one `Evaluate`:
 //!
 //! * What goes in are the values of the study's inputs and constants, in the order of [`UmBridgeSettings::arguments`],
 //!   divided into as many lists as the model takes.

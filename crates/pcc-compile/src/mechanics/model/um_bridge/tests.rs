@@ -15,6 +15,8 @@ enum Reply {
     Raw(&'static str),
     /// Says nothing until the client goes.
     Silence,
+    /// Sends blanks until the client goes.
+    Endless,
 }
 
 /// A server that speaks just enough HTTP. It ends with the tests.
@@ -58,6 +60,11 @@ fn reply(mut stream: TcpStream, answer: &(dyn Fn(&str, Value) -> Reply + Send + 
         }
         Reply::Silence => {
             let _ = stream.read(&mut [0]);
+        }
+        Reply::Endless => {
+            let piece = format!("100000\r\n{}\r\n", " ".repeat(0x100000));
+            let _ = stream.write_all(b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n");
+            while stream.write_all(piece.as_bytes()).is_ok() {}
         }
     }
 }
@@ -230,6 +237,9 @@ fn connections_that_fail_are_told_apart() {
     assert!(matches!(short.failure, UmBridgeFailure::Closed { .. }), "{short}");
     let foreign = failure("SSH-2.0-OpenSSH_9.6\r\n");
     assert!(matches!(foreign.failure, UmBridgeFailure::NotHttp { .. }), "{foreign}");
+    // Pieces without end.
+    let endless = model(|_| Reply::Endless).run(&POINT).unwrap_err();
+    assert!(matches!(endless.failure, UmBridgeFailure::TooLarge { path: "Evaluate", .. }), "{endless}");
     // Nobody listens on a port that was just given back.
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let refused = UmBridgeModel::new(settings(&format!("http://127.0.0.1:{port}"))).run(&POINT).unwrap_err();
