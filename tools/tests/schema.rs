@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -124,6 +124,17 @@ fn the_schema_has_the_keys_of_the_reader_and_explains_each() {
     }
 }
 
+/// The document of a server, which prints it once it listens, and would go on.
+fn what_a_server_prints(folder: &Path) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_program"));
+    command.current_dir(folder).args(["serve", "s.pcc", "--port", "0", "--json"]);
+    let mut server = command.stdout(Stdio::piped()).spawn().unwrap();
+    let document = serde_json::Deserializer::from_reader(server.stdout.take().unwrap()).into_iter().next();
+    server.kill().unwrap();
+    server.wait().unwrap();
+    document.unwrap().unwrap()
+}
+
 /// Every document that a command prints has the form that its schema promises.
 #[test]
 fn what_commands_print_satisfies_their_schemas() {
@@ -201,6 +212,8 @@ fn what_commands_print_satisfies_their_schemas() {
     });
     write("answers.csv", &answered.collect::<String>());
     print("ingest t.toml answers.csv");
+    assert_valid(&validator("output/serve.schema.json"), &what_a_server_prints(folder.path()), "serve");
+    seen.insert("serve".to_owned());
     let all: BTreeSet<String> = pcc::cli::schemas().into_iter().map(|(command, _)| command.to_owned()).collect();
     assert_eq!(seen, all);
 }
