@@ -198,6 +198,34 @@ def test_builds_go_on_where_progress_cannot_be_shown(monkeypatch, built, stream,
     assert found == built
 
 
+def test_a_notebook_keeps_one_output_of_progress():
+    pytest.importorskip("IPython")
+    from unittest import mock
+
+    from pcc import _progress
+
+    handle = mock.Mock()
+    with mock.patch("IPython.display.display", return_value=handle) as display:
+        progress = _progress.Progress(_progress._Output())
+        for done in range(3):
+            progress.show("model runs", done, 12345)
+        progress.close()
+    (first,), _ = display.call_args
+    assert display.call_count == 1 and first["text/plain"] == "model runs: 0 of 12 345, 0 s"
+    assert [call.args[0]["text/plain"] for call in handle.update.call_args_list][1:] == [
+        "model runs: 2 of 12 345, 0 s",
+        "",
+    ]
+
+
+def test_short_work_shows_no_progress(capsys, monkeypatch, built):
+    monkeypatch.setattr("pcc._progress._is_terminal", lambda: True)
+    assert built.sample(1000).stable > 0.5
+    assert capsys.readouterr().err == ""
+    built.sample(1000, progress=True)
+    assert "samples: " in capsys.readouterr().err
+
+
 TEXTS = ["𝜇", "🙂 on a plane of its own", "a\x7fb", 'µ "quoted" \\ \t\n\x00\x1f', "\u2028\x85\ufffe"]
 
 
