@@ -61,12 +61,12 @@ pub use pcc_compile::compilation::{
 pub use pcc_compile::reference::{Comparison, ReferenceError, certify_with_model, check_problem, compare_with_model};
 
 // A surrogate and what it answers.
-pub use pcc_evaluate::artifact::{Artifact, Format, ReadError, decode, encode};
+pub use pcc_evaluate::artifact::{Artifact, Format, ReadError, decode, encode, looks_like_a_surrogate};
 pub use pcc_evaluate::components::{Label, Verdict};
 pub use pcc_evaluate::evaluation::{
     Bins, Condition, EvalError, Event, GivenPoints, PointError, Question, Sampler, SurveyError, Sweep, monte_carlo,
 };
-pub use pcc_evaluate::foundation::{InstructionSet, Interrupted, Observer, Silent};
+pub use pcc_evaluate::foundation::{InstructionSet, Interrupted, Observer, Silent, save as save_file};
 pub use pcc_evaluate::probability::inputs::Input;
 pub use pcc_evaluate::probability::statistics::{Interval, Proportion};
 pub use pcc_evaluate::session::{Evaluation, HistogramRequest, Request, Session, SessionError};

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
 import numpy as np
 
 from . import _pcc
+from ._arguments import runs
 from ._errors import AnswerError, StudyError, TellError
+from ._files import path_of
 from ._model import describe, read
 from ._points import as_points
 from ._progress import progress as _progress
 from ._study import Study
-from ._surrogate import Surrogate, _runs
+from ._surrogate import Surrogate
 
 
 def build(
@@ -68,7 +70,7 @@ def build(
         raise StudyError(
             f'build takes a study, not a {type(study).__name__}: pcc.Study(...), or pcc.Study.read("study.toml")'
         )
-    settings = _runs(jobs, journal, retry_failed=retry_failed)
+    settings = runs(jobs, journal, retry_failed=retry_failed)
     data, failed = _pcc.build(study._native, settings, _progress(progress))
     if failed:
         warnings.warn(f"{len(failed)} model runs failed and were skipped; the first at {failed[0]}", RuntimeWarning, 2)
@@ -77,6 +79,9 @@ def build(
 
 class Builder:
     """A build whose runs are made by whatever you have: joblib, Dask, a scheduler.
+
+    Where a model has eigenvalues that are zero, or symmetric matrices without damping, the builder calls the function
+    itself at up to 16 points, to see whether its structure makes it so.
 
     Parameters
     ----------
@@ -102,7 +107,7 @@ class Builder:
         if not isinstance(study, Study):
             raise StudyError(f"Builder takes a study, not a {type(study).__name__}")
         self._study = study
-        self._native = _pcc.Builder(study._native, None if journal is None else os.fspath(journal))
+        self._native = _pcc.Builder(study._native, None if journal is None else path_of(journal))
 
     @property
     def study(self) -> Study:
@@ -125,10 +130,18 @@ class Builder:
             all inputs if the study fits derivatives. An exception, or a text, stands for a run that failed.
         """
         X = as_points(X, self._study.names)
-        if isinstance(answers, (str, bytes)) or not hasattr(answers, "__len__") or not hasattr(answers, "__iter__"):
+        if (
+            isinstance(answers, (str, bytes, Mapping, Set))
+            or not hasattr(answers, "__len__")
+            or not hasattr(answers, "__iter__")
+        ):
             raise TellError(f"answers is a {type(answers).__name__}; give a list with an answer for each row of X")
         if len(answers) != len(X):
             raise TellError(f"there are {len(X)} points and {len(answers)} answers; give one for each")
+        seen: dict[bytes, int] = {}
+        for row, x in enumerate(X):
+            if (first := seen.setdefault(x.tobytes(), row)) != row:
+                raise TellError(f"rows {first} and {row} of X are the same point; answer it once")
         self._native.tell(X, [self._told(row, answer) for row, answer in enumerate(answers)])
 
     def _told(self, row: int, answer: Any) -> Any:

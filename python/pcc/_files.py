@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import enum
+import json
 import os
-import secrets
+from collections.abc import Mapping
+from typing import Any
 
+from . import _pcc
 from ._errors import FileError
 
 #: Bytes of a file that tell what it is, as for the command.
@@ -23,7 +25,18 @@ class Kind(enum.Enum):
         """Whether a file that starts so is of this kind."""
         if self is Kind.PAGE:
             return b'<meta name="generator" content="pcc report ' in start
-        return start.startswith(b"\x89PCC\r\n\x1a\n") or b"".join(start.split()).startswith(b'{"format":{')
+        return _pcc.looks_like_a_surrogate(start)
+
+
+def path_of(value: Any) -> str:
+    """A path as text."""
+    try:
+        path = os.fsdecode(value)
+    except TypeError:
+        raise FileError(f"a {type(value).__name__} is no path of a file; give a text or a pathlib.Path") from None
+    if "\0" in path:
+        raise FileError(f"{path!r} is no path of a file: it holds a null character")
+    return path
 
 
 def refuse_to_replace(path: str, kind: Kind) -> None:
@@ -39,20 +52,26 @@ def refuse_to_replace(path: str, kind: Kind) -> None:
         raise FileError(f"{path}: exists and {kind.value}; name another file, or remove it first")
 
 
+def keep_certificates(path: str, own: Mapping[str, Any]) -> None:
+    """Refuses a surrogate with certificates that the one with this `inspect()` has not: each has cost model runs."""
+    if not os.path.isfile(path):
+        return
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+        there = json.loads(_pcc.Surrogate(data).inspect(path, len(data))[0])
+    except (OSError, FileError):
+        return  # what cannot be read has none that could be used
+    kept = own["certificates"] if there["content_id"] == own["content_id"] else []
+    lost = sum(certificate not in kept for certificate in there["certificates"])
+    if lost:
+        raise FileError(
+            f"{path}: has {lost} certificate{'s' if lost > 1 else ''}, which would be lost; name another file, or pass "
+            "overwrite=True"
+        )
+
+
 def save(path: str, data: bytes, kind: Kind) -> None:
     """Writes a file whole or not at all, in the place of its like alone."""
     refuse_to_replace(path, kind)
-    beside = os.path.join(os.path.dirname(path), f".pcc-{secrets.token_hex(8)}")
-    try:
-        try:
-            with open(beside, "xb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(beside, path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(beside)
-            raise
-    except OSError as error:
-        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+    _pcc.save(path, data)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Coroutine, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -81,17 +82,21 @@ def kind_of(form: str) -> str:
 
 def read(answer: Any) -> tuple[str, np.ndarray, Mapping]:
     """The form of an answer, its numbers, and the derivatives that came with it."""
-    if isinstance(answer, Iterator) or answer is None or isinstance(answer, (str, bytes, Mapping)):
+    is_nothing = isinstance(answer, (str, bytes, Iterator, Coroutine)) or answer is None or _is_dict(answer)
+    if is_nothing or callable(answer):
         kind = "None" if answer is None else f"a {type(answer).__name__}"
         raise AnswerError(f"the function has returned {kind}; {FORMS}")
     given: Mapping = {}
-    if isinstance(answer, tuple) and answer and isinstance(answer[-1], Mapping):
+    if isinstance(answer, tuple) and answer and _is_dict(answer[-1]):
         *parts, given = answer
         answer = tuple(parts) if len(parts) != 1 else parts[0]
     if isinstance(answer, (tuple, list)) and len(answer) and any(_dimensions(part) == 2 for part in answer):
         if len(answer) != 3:
             raise AnswerError(f"the function has returned {len(answer)} matrices; {FORMS}, with None for a C of zeros")
         mass, damping, stiffness = answer
+        for name, part in (("M", mass), ("K", stiffness)):
+            if part is None:
+                raise AnswerError(f"{name} is None; C alone may be None, for zeros")
         sized = _matrix(mass, "M")
         parts = [sized, np.zeros_like(sized) if damping is None else _matrix(damping, "C"), _matrix(stiffness, "K")]
         for name, part in zip("CK", parts[1:]):
@@ -108,6 +113,11 @@ def read(answer: Any) -> tuple[str, np.ndarray, Mapping]:
     return "eigenvalues", _eigenvalues(answer), given
 
 
+def _is_dict(part: Any) -> bool:
+    """A dict, and none of SciPy's sparse matrices that is one."""
+    return isinstance(part, Mapping) and not hasattr(part, "toarray")
+
+
 def _dimensions(part: Any) -> int:
     try:
         return part.ndim if hasattr(part, "ndim") else np.ndim(part)
@@ -118,7 +128,12 @@ def _dimensions(part: Any) -> int:
 def _matrix(part: Any, name: str) -> np.ndarray:
     if hasattr(part, "toarray"):
         part = part.toarray()
+    _refuse_masked(part, name)
     matrix = np.asarray(part)
+    if matrix.dtype.kind == "O":
+        # Numbers of another kind, such as those of SymPy.
+        with contextlib.suppress(TypeError, ValueError, OverflowError):
+            matrix = matrix.astype(np.float64)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.size == 0:
         raise AnswerError(f"{name} is {_size(matrix)}; it must be square")
     if matrix.dtype.kind not in "fiu":
@@ -130,11 +145,19 @@ def _matrix(part: Any, name: str) -> np.ndarray:
     return matrix
 
 
+def _refuse_masked(part: Any, name: str) -> None:
+    if np.ma.is_masked(part):
+        raise AnswerError(f"{name} has masked entries; fill them")
+
+
 def _eigenvalues(answer: Any) -> np.ndarray:
+    _refuse_masked(answer, "the vector of eigenvalues")
     try:
         found = np.asarray(answer)
     except (ValueError, TypeError) as error:
         raise AnswerError(f"the function has returned what is no array: {error}; {FORMS}") from error
+    if found.ndim == 0 and found.dtype.kind == "O":
+        raise AnswerError(f"the function has returned a {type(answer).__name__}; {FORMS}")
     if found.ndim != 1 or found.size == 0 or found.dtype.kind not in "fiuc":
         raise AnswerError(f"the function has returned an array of type {found.dtype} and shape {found.shape}; {FORMS}")
     found = np.ascontiguousarray(found, dtype=np.complex128)
@@ -163,7 +186,7 @@ def _given(derivative: Any, name: str, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def _size(matrix: np.ndarray) -> str:
-    return " × ".join(map(str, matrix.shape)) if matrix.ndim else "a number"
+    return {0: "a number", 1: f"a vector of {matrix.size}"}.get(matrix.ndim, " × ".join(map(str, matrix.shape)))
 
 
 def describe(error: BaseException) -> str:

@@ -17,7 +17,12 @@ def as_points(X: Any, names: Sequence[str]) -> np.ndarray:
             f"X is {_kind(X)}, not points; give an array with a row for each point and the columns {_list(names)}, or a "
             "dict or table with these columns"
         )
+    if callable(getattr(X, "collect", None)):
+        raise PointsError(f"X is {_kind(X)}, which has no values yet; give X.collect()")
     if isinstance(X, Mapping):
+        return _columns(X, list(X), names)
+    if isinstance(X, Sequence) and len(X) and all(isinstance(row, Mapping) for row in X):
+        X = {name: [row.get(name) for row in X] for name in names if any(name in row for row in X)}
         return _columns(X, list(X), names)
     columns = getattr(X, "columns", None)
     if columns is not None and not callable(columns):
@@ -69,12 +74,12 @@ def _numbers(values: Any, what: str) -> np.ndarray:
         values = values.toarray()
     try:
         found = np.asarray(values)
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise PointsError(f"{what} is no array of numbers: {error}") from error
     if found.dtype.kind == "O" and found.ndim > 0:
         try:
             found = found.astype(np.float64)
-        except (ValueError, TypeError) as error:
+        except (ValueError, TypeError, OverflowError) as error:
             raise PointsError(f"{what} holds what are no numbers: {error}") from error
     if found.dtype.kind not in "fiu":
         raise PointsError(f"{what} is {_kind(values)} of type {found.dtype}; give real numbers")

@@ -5,10 +5,12 @@ from __future__ import annotations
 import copy
 import html
 import json
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from . import _pcc
+from ._arguments import number
 from ._errors import QuestionError
 
 
@@ -43,6 +45,7 @@ class Share(float):
         level : float
             With what probability, above 0 and below 1. Of other samplers than ``"monte-carlo"`` 0.95 alone is known.
         """
+        level = number(level, "level")
         if level == self._interval.level:
             return self._interval
         if not 0.0 < level < 1.0:
@@ -91,11 +94,22 @@ def _flat(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]
             yield before + name, value
 
 
+#: What texts of the command say of its options.
+_OF_COMMAND = "more: --details"
+
+
+def as_html(text: str) -> str:
+    """A text of the command for notebooks, whose columns need letters of one width."""
+    text = text.rstrip().removesuffix(_OF_COMMAND).rstrip()
+    return f'<pre style="font-family: monospace">{html.escape(text)}</pre>'
+
+
 class Answer:
     """What the library answers: the same numbers, sentences and pictures as the command's."""
 
     def __init__(self, answer: tuple[str, str, list[str]], in_file: bool = True) -> None:
-        said, self._text, self._charts = answer
+        said, text, self._charts = answer
+        self._text = text.rstrip().removesuffix(_OF_COMMAND).rstrip()
         self._data: dict[str, Any] = json.loads(said)
         if not in_file:
             self._data.pop("file", None)
@@ -118,10 +132,10 @@ class Answer:
         return copy.deepcopy(self._data[key])
 
     def __repr__(self) -> str:
-        return self._text.rstrip()
+        return self._text
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(repr(self))}</pre>" + "".join(self._charts)
+        return as_html(repr(self)) + "".join(self._charts)
 
 
 class _Picture:
@@ -129,8 +143,13 @@ class _Picture:
 
     _charts: list[str]
 
-    def _repr_svg_(self) -> str | None:
+    @property
+    def svg(self) -> str | None:
+        """The picture, as the text of an SVG file; None if there is none."""
         return self._charts[0] if self._charts else None
+
+    def _repr_svg_(self) -> str | None:
+        return self.svg
 
 
 class Samples(Answer):
@@ -218,6 +237,48 @@ class Sweep(_Picture, Answer):
     def to_frame(self):
         """A row for each point, as a ``pandas.DataFrame``."""
         return self.points.to_frame()
+
+
+_BAND = ("lower_hz", "median_hz", "upper_hz")
+
+
+class Campbell(_Picture):
+    """Frequencies of modes along an input, with the bands that the other inputs leave open."""
+
+    def __init__(
+        self,
+        name: str,
+        values: Sequence[float],
+        level: float,
+        modes: Sequence[int],
+        found: Sequence[Samples],
+        surrogate: _pcc.Surrogate,
+    ) -> None:
+        self._name, self._level, self._rows = name, level, []
+        points: dict[int, list] = {mode: [] for mode in modes}
+        for value, samples in zip(values, found):
+            quantiles = {row["quantity"]: [one["value"] for one in row["quantiles"]] for row in samples["quantiles"]}
+            for mode in [mode for mode in samples["modes"] if mode["mode"] in points]:
+                # Where a mode never oscillates, it has no frequency.
+                frequency = quantiles.get(f"frequency_{mode['mode']}", [None] * 3)
+                row = {name: float(value), "mode": mode["mode"], **dict(zip(_BAND, frequency))}
+                self._rows.append(row | {"unstable_share": mode["unstable_share"]})
+                drawn = [math.nan if hertz is None else hertz for hertz in frequency]
+                points[mode["mode"]].append((drawn, mode["unstable_share"]))
+        self._charts = [_pcc.campbell(surrogate, name, [float(value) for value in values], list(points.items()))]
+
+    @property
+    def points(self) -> Table:
+        """A row for each value of the input and each mode."""
+        return Table(self._rows)
+
+    def to_frame(self):
+        """A row for each value of the input and each mode, as a ``pandas.DataFrame``."""
+        return self.points.to_frame()
+
+    def __repr__(self) -> str:
+        modes = len({row["mode"] for row in self._rows})
+        return f"<Campbell diagram of {modes} modes over {self._name}, bands of {100 * self._level:g} %>"
 
 
 class Critical(Answer):

@@ -8,11 +8,15 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from . import _pcc
-from ._errors import AnswerError, RunError, StudyError
+from ._errors import AnswerError, QuestionError, RunError, StudyError
+from ._files import path_of
 from ._model import Function, describe, kind_of, read
 from ._toml import study_text
 
 _LINE = re.compile(r"(study\.toml: )?line \d+: ")
+_PARSING = re.compile(
+    r"TOML parse error at line \d+.*?\n\s*\d+ \| (?P<line>[^\n]*)\n[^\n]*\^[^\n]*\n(?P<why>.*)", re.DOTALL
+)
 
 
 class Study:
@@ -111,7 +115,7 @@ class Study:
         -------
         Study
         """
-        path = os.fspath(path)
+        path = path_of(path)
         native = _pcc.Study.read(path)
         study = cls.__new__(cls)
         if model is not None:
@@ -125,8 +129,10 @@ class Study:
         """Read the text of a study file; files that it names lie in `folder`."""
         if model is not None:
             _check_function(model)
-        study = cls.__new__(cls)
-        study._set(text, os.path.abspath(folder), _pcc.Study.from_toml(text, os.fspath(folder)), model)
+        if not isinstance(text, str):
+            raise StudyError(f"the text of a study is a {type(text).__name__}; a file is read by pcc.Study.read(path)")
+        study, folder = cls.__new__(cls), path_of(folder)
+        study._set(text, os.path.abspath(folder), _pcc.Study.from_toml(text, folder), model)
         return study
 
     @property
@@ -171,13 +177,20 @@ class Study:
         missing = [name for name in self.names if name not in inputs]
         if missing or len(inputs) > len(self.names):
             raise StudyError(f"answer() takes the inputs {', '.join(self.names)}, not {', '.join(inputs) or 'nothing'}")
-        return self._function([float(inputs[name]) for name in self.names], self.uses_derivatives)
+        return self._function([_value_of(name, inputs[name]) for name in self.names], self.uses_derivatives)
 
     def __reduce__(self):
         return type(self).from_toml, (self._text, self._model, self._folder)
 
     def __repr__(self) -> str:
         return f"<pcc.Study {self.name}: {self._native.kind}, inputs {', '.join(self.names)}>"
+
+
+def _value_of(name: str, value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise StudyError(f"answer() takes a number for {name}, not {value!r}") from None
 
 
 def _check_function(model: Any) -> None:
@@ -192,7 +205,9 @@ def _from_text(text: str, folder: str) -> _pcc.Study:
     try:
         return _pcc.Study.from_toml(text, folder)
     except StudyError as error:
-        raise StudyError(_LINE.sub("", str(error))) from None
+        said = _LINE.sub("", str(error))
+        parsing = _PARSING.search(said)
+        raise StudyError(f"{parsing['line']}: {parsing['why'].strip()}" if parsing else said) from None
 
 
 def _probe(study: _pcc.Study, model: Callable[..., Any]) -> str:
@@ -206,3 +221,43 @@ def _probe(study: _pcc.Study, model: Callable[..., Any]) -> str:
         sentence = f"the model failed with all inputs at their medians, {study.describe(point)}: {describe(error)}"
         raise RunError(sentence, inputs.items()) from (None if is_ours else error)
     return kind_of(form)
+
+
+def study_of(found: Mapping[str, Any], model: Callable[..., Any]) -> Study:
+    """The study of a function that a surrogate was built from, made of what its file says: its inspection."""
+    _check_function(model)
+    spectrum: dict[str, Any] = {}
+    if found["margin"]:
+        spectrum["margin"] = found["margin"].get("growth_rate", found["margin"])
+    dependence = found.get("dependence")
+    try:
+        study = Study(
+            {known["name"]: _law_of(known) for known in found["inputs"]},
+            model,
+            name=found["study"],
+            spectrum=spectrum,
+            dependence=dependence and _dependence_of(dependence),
+        )
+        problem = study._native.problem_hash
+    except StudyError:
+        problem = None
+    if problem != found["problem_hash"]:
+        raise QuestionError(
+            "this function, with the inputs and the margin that the file of the surrogate has, is not the problem that it was "
+            "built for: further settings, such as version, constants or spectrum, are not in the file; give the study, "
+            "s.certify(pcc.Study(...))"
+        )
+    return study
+
+
+def _law_of(known: Mapping[str, Any]) -> dict[str, Any]:
+    law = {"distribution": known["distribution"], **known["parameters"]}
+    if known.get("levels"):
+        law["values"] = [level["value"] for level in known["levels"]]
+        law["weights"] = [level["proportion"] for level in known["levels"]]
+    return law
+
+
+def _dependence_of(dependence: Mapping[str, Any]) -> dict[str, Any]:
+    pairs = [[pair["first"], pair["second"], pair["spearman"]] for pair in dependence["correlations"]]
+    return {"kind": dependence["kind"], "spearman": pairs}

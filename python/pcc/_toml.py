@@ -52,7 +52,7 @@ def _value(value: Any, where: str) -> str:
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{_key(key)} = {_value(item, f'{where}.{key}')}" for key, item in value.items()) + " }"
     if isinstance(value, np.ndarray):
-        value = value.tolist()
+        return _value(value.tolist(), where)
     if isinstance(value, (list, tuple, range)):
         return "[" + ", ".join(_value(item, where) for item in value) + "]"
     raise StudyError(

@@ -26,6 +26,7 @@ mod surrogate;
 
 use pyo3::prelude::*;
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 /// What `pcc` needs of the library.
 #[pymodule]
@@ -35,13 +36,13 @@ mod _pcc {
     #[pymodule_export]
     use super::compile::{build, certify, compare};
     #[pymodule_export]
-    use super::main;
-    #[pymodule_export]
-    use super::questions::interval;
+    use super::questions::{campbell, interval};
     #[pymodule_export]
     use super::study::Study;
     #[pymodule_export]
-    use super::surrogate::Surrogate;
+    use super::surrogate::{Surrogate, looks_like_a_surrogate};
+    #[pymodule_export]
+    use super::{main, save};
 
     use pyo3::prelude::*;
 
@@ -55,4 +56,10 @@ mod _pcc {
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| pcc::cli::exit_code_of(std::iter::once("pcc".into()).chain(arguments)))
+}
+
+/// Writes a file whole or not at all.
+#[pyfunction]
+fn save(py: Python<'_>, path: PathBuf, data: &[u8]) -> PyResult<()> {
+    py.detach(|| pcc::save_file(&path, data)).map_err(|error| errors::raised(py, error))
 }

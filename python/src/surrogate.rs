@@ -13,6 +13,12 @@ use pyo3::types::PyBytes;
 /// Fewer points are evaluated on the spot: to start threads would take longer.
 const FEW: usize = 256;
 
+/// Whether a file that starts with these bytes looks like a surrogate.
+#[pyfunction]
+pub fn looks_like_a_surrogate(start: &[u8]) -> bool {
+    pcc::looks_like_a_surrogate(start)
+}
+
 /// A surrogate as its file has it.
 #[pyclass(frozen, module = "pcc._pcc")]
 pub struct Surrogate {

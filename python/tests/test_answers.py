@@ -76,7 +76,7 @@ def test_answers_have_frames_text_and_pictures(clutch):
     indices = clutch.sobol(10_000)
     assert indices.to_frame()["input"].tolist() == ["mu", "k_p"] and "<svg" in indices._repr_svg_()
     assert found.verdict in repr(found) and found.verdict.split(":")[0] in found._repr_html_()
-    assert isinstance(found.warnings, list)
+    assert isinstance(found.warnings, list) and "--details" not in repr(found) + found._repr_html_()
     found.to_dict()["modes"].clear()
     assert len(found.modes) > 0
 
@@ -85,3 +85,30 @@ def test_the_page_is_that_of_the_command(clutch, tmp_path):
     clutch.report(tmp_path / "page.html", n=10_000)
     page = (tmp_path / "page.html").read_text()
     assert page.lstrip().lower().startswith("<!doctype html>") and "clutch-r2" in page and "<svg" in page
+
+
+def test_campbell_diagrams_have_the_quantiles_of_samples(clutch):
+    values = [0.4, 0.1, 0.25]
+    found = clutch.campbell(mu=values, n=2000, level=0.8)
+    assert [row["mu"] for row in found.points[::4]] == sorted(values) and len(found.points) == 3 * 4
+    samples = clutch.sample(2000, where={"mu": 0.25}, quantiles=[0.1, 0.5, 0.9])
+    quantiles = {row["quantity"]: [one["value"] for one in row["quantiles"]] for row in samples["quantiles"]}
+    for row, mode in zip(found.points[4:8], samples.modes):
+        assert [row[key] for key in ("lower_hz", "median_hz", "upper_hz")] == quantiles[f"frequency_{row['mode']}"]
+        assert row["unstable_share"] == mode["unstable_share"] and row["mode"] == mode["mode"]
+    assert "mode 4" in found.svg and "mostly unstable" in found.svg and "bands of 80 %" in repr(found)
+    assert "once per revolution" not in found.svg
+    some = clutch.campbell(mu=values, n=100, modes=[4, 2])
+    assert sorted({row["mode"] for row in some.points}) == [2, 4] and "mode 3" not in some.svg
+
+
+@pytest.mark.parametrize("unit", ["rpm", "rad/s", "Hz"])
+def test_campbell_diagrams_over_speeds_have_the_line_of_rotation(unit):
+    study = pcc.Study({"n": pcc.uniform(100, 200, unit=unit), "k": pcc.uniform(90, 110)}, _whirls)
+    # An input may be called as an argument is.
+    found = pcc.build(study).campbell({"n": [100, 200]}, n=100)
+    assert "once per revolution" in found.svg and "<svg" in found._repr_svg_()
+
+
+def _whirls(n, k):
+    return np.eye(2), np.array([[1.0, n / 100], [-n / 100, 1.0]]), k * np.eye(2)

@@ -153,7 +153,7 @@ def test_a_journal_keeps_runs(tmp_path, caplog):
 
 def test_surrogates_are_certified_and_compared(built):
     found = pcc.Surrogate.from_bytes(built.to_bytes())
-    with pytest.raises(pcc.QuestionError, match="give the study"):
+    with pytest.raises(pcc.QuestionError, match=r"give the function, s.certify\(f\), or the study"):
         found.certify(runs=50)
     study = pcc.Study(OSCILLATOR, systems.oscillator)
     certificate = found.certify(study, runs=50)
@@ -166,6 +166,45 @@ def test_surrogates_are_certified_and_compared(built):
     other = pcc.Study(OSCILLATOR | {"c": pcc.uniform(0, 1)}, systems.oscillator)
     with pytest.raises(pcc.Error, match="another"):
         built.compare(other, 10)
+
+
+LAWS = [
+    OSCILLATOR,
+    {"k": pcc.normal(100, cv=0.05, unit="N/m"), "c": pcc.lognormal(median=1.0, cv=0.2)},
+    {"k": pcc.uniform(nominal=100.0, spread="5%"), "c": pcc.beta(mean=0.1, std=0.1, lower=-0.1, upper=0.5)},
+    {"k": pcc.weibull(2.0, 100.0), "c": pcc.discrete([-0.1, 0.1, 0.4])},
+]
+
+
+@pytest.mark.parametrize("laws", LAWS, ids=range(len(LAWS)))
+@pytest.mark.parametrize("margin", [None, 0.1, {"damping_ratio": 0.005}], ids=["no", "rate", "ratio"])
+def test_a_loaded_surrogate_takes_the_function_alone(laws, margin):
+    spectrum = None if margin is None else {"margin": margin}
+    study = pcc.Study(laws, systems.oscillator, name="named", spectrum=spectrum, design={"maximum": 20})
+    loaded = pcc.Surrogate.from_bytes(pcc.build(study).to_bytes())
+    by_function, by_study = loaded.compare(systems.oscillator, 50).to_dict(), loaded.compare(study, 50).to_dict()
+    for found in (by_function, by_study):
+        del found["elapsed_seconds"]
+    assert by_function == by_study
+
+
+OTHERS = [
+    {"version": "2"},
+    {"constants": {"l": 1.0}},
+    {"spectrum": {"modes": [1]}},
+    {"model": systems.eigenvalues_of_oscillator},
+]
+
+
+@pytest.mark.parametrize("others", OTHERS, ids=range(len(OTHERS)))
+def test_a_function_alone_is_refused_where_the_file_does_not_say_all(others):
+    model = others.get("model", lambda k, c, l=0.0: systems.oscillator(k, c))  # noqa: E741
+    study = pcc.Study(OSCILLATOR, **({"model": model, "answers": None, "design": {"maximum": 60}} | others))
+    loaded = pcc.Surrogate.from_bytes(pcc.build(study).to_bytes())
+    with pytest.raises(pcc.QuestionError, match=r"not the problem that it was built for: .* give the study"):
+        loaded.certify(systems.oscillator, runs=50)
+    with pytest.raises(pcc.StudyError, match="the model is a ndarray; give a function"):
+        loaded.certify(np.eye(2))
 
 
 class Broken(io.StringIO):

@@ -39,6 +39,12 @@ POINTS = [
     ({"mu": [[0.1]], "k_p": 16e6}, r"column mu has the shape \(1, 1\)"),
     ({"mu": ["high"], "k_p": 16e6}, "column mu is a list of type <U4; give real numbers"),
     (np.ma.masked_array([[0.1, 16e6]], mask=[[True, False]]), "masked values"),
+    ([[10**400, 16e6]], "no numbers: .*too large"),
+    ([{"mu": 0.1}], "X has no column k_p; its columns are mu"),
+    ([{"mu": 0.1, "k_p": 16e6}, {"mu": 0.1}], "row 1: k_p = NaN|column k_p holds what are no numbers"),
+    ({0.1, 16e6}, "X is a set"),
+    ({"mu": (x for x in [0.1]), "k_p": 16e6}, "column mu is a generator"),
+    (zip([0.1], [16e6]), "X is a zip, not points"),
 ]
 
 
@@ -47,6 +53,49 @@ def test_points_that_are_none(clutch, X, sentence):
     with pytest.raises(pcc.PointsError, match=sentence) as caught:
         clutch.eigenvalues(X)
     assert isinstance(caught.value, (pcc.Error, ValueError))
+
+
+def test_tables_of_any_library_are_points_or_say_what_they_lack(clutch, points):
+    pandas = pytest.importorskip("pandas")
+    expected, (mu, k_p) = clutch.max_re(points).tolist(), points.T
+    for dtype in ["Float64", "float64", ">f8"]:
+        frame = pandas.DataFrame({"mu": np.asarray(mu), "k_p": k_p}).astype(dtype if dtype != ">f8" else "float64")
+        assert clutch.max_re(frame).tolist() == expected
+    missing = pandas.DataFrame({"mu": pandas.array([0.1, None], dtype="Float64"), "k_p": 16e6})
+    with pytest.raises(pcc.PointsError, match="row 1: mu = NaN"):
+        clutch.max_re(missing)
+    with pytest.raises(pcc.PointsError, match="column mu is a Series of type bool"):
+        clutch.max_re(pandas.DataFrame({"mu": [True], "k_p": 16e6}))
+    with pytest.raises(pcc.PointsError, match=r"column mu has the shape \(1, 2\)"):
+        clutch.max_re(pandas.DataFrame([[0.1, 0.2, 16e6]], columns=["mu", "mu", "k_p"]))
+    assert clutch.max_re([{"k_p": k, "mu": m} for m, k in points[:5]]).tolist() == expected[:5]
+
+
+def test_tables_of_polars_are_points(clutch, points):
+    polars = pytest.importorskip("polars")
+    expected, (mu, k_p) = clutch.max_re(points).tolist(), points.T
+    table = polars.DataFrame({"k_p": k_p, "mu": mu})
+    assert clutch.max_re(table).tolist() == expected
+    with pytest.raises(pcc.PointsError, match=r"X is a LazyFrame, which has no values yet; give X.collect\(\)"):
+        clutch.max_re(table.lazy())
+    with pytest.raises(pcc.PointsError, match="row 1: mu = NaN"):
+        clutch.max_re(polars.DataFrame({"mu": [0.1, None], "k_p": [16e6, 16e6]}))
+
+
+@pytest.mark.parametrize("change", ["byte order", "read only", "Fortran", "long double", "reversed"])
+def test_numbers_are_read_however_they_lie_in_memory(clutch, points, change):
+    expected, given = clutch.max_re(points).tolist(), points.copy()
+    if change == "byte order":
+        given = points.astype(">f8")
+    elif change == "read only":
+        given.setflags(write=False)
+    elif change == "Fortran":
+        given = np.asfortranarray(points)
+    elif change == "long double":
+        given = points.astype(np.longdouble)
+    else:
+        given, expected = points[::-1], expected[::-1]
+    assert clutch.max_re(given).tolist() == expected
 
 
 QUESTIONS = [
@@ -59,6 +108,18 @@ QUESTIONS = [
     (lambda s: s.sample(100, where={"mu": (0.2, 0.1)}), "mu"),
     (lambda s: s.sample(100, where={"mu": (0.1, 0.2, 0.3)}), "the lower and the upper end"),
     (lambda s: s.sample(100, where={"mu": "low"}), "give a number"),
+    (lambda s: s.sample(100, where=["mu"]), "where is a list; give a dict by inputs"),
+    (lambda s: s.sample(100, where=(x for x in "mu")), "where is a generator; give a dict"),
+    (lambda s: s.sample(100, where={"mu": 1j}), "give a number"),
+    (lambda s: s.sample(100, seed=None), "seed is None"),
+    (lambda s: s.sample(np.array([100])), "give a whole number"),
+    (lambda s: s.sample(10**30), "give a whole number"),
+    (lambda s: s.sample(100, quantiles=0.5), "give a list"),
+    (lambda s: s.sample(100, replicates=-1), "replicates is -1"),
+    (lambda s: s.sweep("mu"), "what is swept is a str; give a dict by inputs"),
+    (lambda s: s.sweep(mu=np.linspace(0, 0.5, 10**7), n=10), "use fewer"),
+    (lambda s: s.campbell("mu"), "is a str; give a dict by inputs"),
+    (lambda s: s.sample(100).stable.interval("high"), "level is 'high'; give a number"),
     (lambda s: s.sample(100, events="flutter"), "give a list"),
     (lambda s: s.sample(100, events=["max_re=1"]), "is not understood"),
     (lambda s: s.sample(100, events=["size<1"]), "size"),
@@ -67,13 +128,25 @@ QUESTIONS = [
     (lambda s: s.sample(100, sampler="sobol'"), "choose one of 'monte-carlo'"),
     (lambda s: s.sweep(), "there is no input to sweep"),
     (lambda s: s.sweep(mu=[0.0, 0.1, 0.5]), "not equally spaced"),
-    (lambda s: s.sweep(mu=[0.1]), "at least two"),
+    (lambda s: s.sweep(mu=[0.1]), "at least two finite"),
     (lambda s: s.sweep(mu=(x for x in [0.0, 0.5])), "generator"),
     (lambda s: s.sweep(colour=[0.0, 0.5]), "colour"),
     (lambda s: s.critical("colour"), "no such input; it has mu, k_p"),
     (lambda s: s.critical(3), "give its name"),
     (lambda s: s.to_bytes("xml"), 'choose "binary" or "json"'),
-    (lambda s: s.certify(lambda mu, k_p: None), "give the study"),
+    (lambda s: s.certify(), "give the function, s.certify"),
+    (lambda s: s.certify(lambda mu, k_p: np.eye(2)), "give the study"),
+    (lambda s: s.campbell(), "along one input"),
+    (lambda s: s.campbell(mu=[0.0, 0.5], k_p=[15.2e6, 16.8e6]), "along one input"),
+    (lambda s: s.campbell(mu=0.1), "at least two finite numbers"),
+    (lambda s: s.campbell(mu=(x for x in [0.0, 0.5])), "generator"),
+    (lambda s: s.campbell(mu=[0.0, 0.5], level=95), "level is 95"),
+    (lambda s: s.campbell(mu=[0.0, 0.5], where={"mu": 0.1}), "mu is what the diagram is along"),
+    (lambda s: s.campbell(mu=[0.0, 0.5], modes=[9]), "no mode 9; the surrogate has 1, 2, 3, 4"),
+    (lambda s: s.campbell(mu=[0.0, 0.5], modes=3), "give a list"),
+    (lambda s: s.campbell(mu=[0.0, 0.5], modes=[]), "at least one mode"),
+    (lambda s: s.campbell(colour=[0.0, 0.5]), "colour"),
+    (lambda s: s.campbell(mu=[0.0, 0.7]), "0.7"),
 ]
 
 
@@ -99,6 +172,46 @@ def test_files_that_are_none(tmp_path, clutch):
         pcc.Study.read(tmp_path / "missing.toml")
 
 
+PATHS = [None, 3, "a\0b.pcc", ["a.pcc"]]
+
+
+@pytest.mark.parametrize("path", PATHS, ids=range(len(PATHS)))
+def test_paths_that_are_none(clutch, path):
+    for use in (pcc.load, clutch.save, clutch.report, pcc.Study.read):
+        with pytest.raises(pcc.FileError, match="is no path of a file"):
+            use(path)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there are no such files")
+def test_devices_pipes_and_links_are_not_replaced(clutch, tmp_path):
+    pipe, link, file, dangling = (tmp_path / name for name in ("pipe", "link.pcc", "file.pcc", "dangling"))
+    os.mkfifo(pipe)
+    dangling.symlink_to(tmp_path / "missing")
+    clutch.save(file)
+    link.symlink_to(file)
+    for path, sentence in [
+        (pipe, "device or a pipe"),
+        (tmp_path, "folder"),
+        (dangling, "link to a file that does not"),
+    ]:
+        for write in (clutch.save, clutch.report):
+            with pytest.raises(pcc.FileError, match=sentence):
+                write(path) if write == clutch.save else write(path, n=100)
+    clutch.save(link)
+    assert link.is_symlink() and pipe.is_fifo() and pcc.load(file) == clutch
+
+
+def test_bytes_that_are_none(clutch):
+    for form in (bytes, bytearray, memoryview):
+        assert pcc.Surrogate.from_bytes(form(clutch.to_bytes())) == clutch
+    with pytest.raises(pcc.FileError, match=r"a str is not the bytes of a surrogate; of a file it is pcc.load\(path\)"):
+        pcc.Surrogate.from_bytes("clutch.pcc")
+    with pytest.raises(TypeError, match=r"surrogates come from files, pcc.load\(path\)"):
+        pcc.Surrogate("clutch.pcc")
+    with pytest.raises(pcc.StudyError, match=r"the text of a study is a bytes; a file is read by pcc.Study.read"):
+        pcc.Study.from_toml(b"format = 1")
+
+
 def system(**matrices):
     """A function that answers these matrices of one degree of freedom, or what is given in their place."""
     one = {"M": [[1.0]], "C": [[0.1]], "K": [[100.0]]} | matrices
@@ -119,6 +232,19 @@ ANSWERS = [
     (system(C=[[0.1, 0.0], [0.0, 0.1]]), "C is 2 × 2, but M is 1 × 1"),
     (system(K=[[np.nan]]), r"K\[0, 0\] is nan, no finite number"),
     (system(M=[["heavy"]]), "M is of type <U5"),
+    (system(M=None), "M is None; C alone may be None"),
+    (system(K=None), "K is None; C alone may be None"),
+    (system(C=[0.1]), "C is a vector of 1; it must be square"),
+    (system(M=np.eye(1, dtype=bool)), "M is of type bool"),
+    (system(M=np.array([["heavy"]], dtype=object)), "M is of type object"),
+    (system(M=np.zeros((1, 0, 1))), "M is 1 × 0 × 1; it must be square"),
+    (lambda k, c: np.ma.masked_array(np.eye(2), mask=[[0, 1], [0, 0]]), "A has masked entries"),
+    (lambda k, c: np.ma.masked_array([1.0, 2.0], mask=[0, 1]), "eigenvalues has masked entries"),
+    (lambda k, c: {"M": np.eye(1)}, "has returned a dict"),
+    (lambda k, c: np.array(1.0), r"shape \(\)"),
+    (lambda k, c: lambda: None, "has returned a function"),
+    (lambda k, c: object(), "has returned a object"),
+    (lambda *values: None, "TypeError: .*unexpected keyword argument"),
     (lambda k: None, r"TypeError: .*unexpected keyword argument 'c'"),
     (lambda k, c: 1 / 0, r"ZeroDivisionError: division by zero \(test_misuse.py, line \d+\)"),
 ]
@@ -131,6 +257,88 @@ def test_functions_that_answer_no_model(function, sentence):
     ) as caught:
         pcc.Study(OSCILLATOR, function)
     assert caught.value.inputs == {"k": 100.0, "c": 0.1}
+
+
+async def promises(k, c):
+    return systems.oscillator(k, c)
+
+
+@pytest.mark.filterwarnings("ignore:coroutine")
+def test_coroutines_are_no_answers():
+    with pytest.raises(pcc.RunError, match="the function has returned a coroutine; return M, C, K"):
+        pcc.Study(OSCILLATOR, promises)
+
+
+FORMATS = [
+    "bsr_array",
+    "coo_array",
+    "csc_array",
+    "csr_array",
+    "dia_array",
+    "dok_array",
+    "lil_array",
+    "csr_matrix",
+    "dok_matrix",
+]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_sparse_matrices_have_any_format(name):
+    form = getattr(pytest.importorskip("scipy.sparse"), name)
+    answers = [pcc.Study(OSCILLATOR, f).answer(k=95.0, c=0.1) for f in _systems_as(lambda part: form(np.array(part)))]
+    expected = [pcc.Study(OSCILLATOR, f).answer(k=95.0, c=0.1) for f in _systems_as(np.array)]
+    for found, same in zip(answers, expected):
+        assert found[0] == same[0] and all(np.array_equal(a, b) for a, b in zip(found[1:], same[1:]))
+
+
+def _systems_as(form):
+    return [
+        lambda k, c: form([[0.0, 1.0], [-k, -c]]),
+        lambda k, c: (form([[1.0]]), form([[c]]), form([[k]])),
+        lambda k, c: (form([[1.0]]), form([[c]]), form([[k]]), {"k": (None, None, form([[1.0]]))}),
+    ]
+
+
+def reusing():
+    """A function that writes its answer where its last one is."""
+    here = np.zeros((2, 2))
+
+    def oscillator(k, c):
+        here[:] = systems.oscillator(k, c)
+        return here
+
+    return oscillator
+
+
+def frozen(k, c):
+    found = systems.oscillator(k, c)
+    found.setflags(write=False)
+    return found
+
+
+KINDS = {
+    "reused": reusing(),
+    "read only": frozen,
+    "object": lambda k, c: systems.oscillator(k, c).astype(object),
+    "Fortran": lambda k, c: np.asfortranarray(systems.oscillator(k, c)),
+    "byte order": lambda k, c: systems.oscillator(k, c).astype(">f8"),
+    "long double": lambda k, c: systems.oscillator(k, c).astype(np.longdouble),
+    "list": lambda k, c: systems.oscillator(k, c).tolist(),
+    "matrix": lambda k, c: np.asmatrix(systems.oscillator(k, c)),
+    "keywords": lambda **inputs: systems.oscillator(**inputs),
+    "unmasked": lambda k, c: np.ma.masked_array(systems.oscillator(k, c)),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_matrices_may_be_arrays_of_any_kind(kind, built):
+    assert pcc.build(pcc.Study(OSCILLATOR, KINDS[kind])) == built
+
+
+def test_functions_with_a_state_of_their_own_are_seen():
+    random = np.random.default_rng(1)
+    with pytest.raises(pcc.RunError, match="the matrices jump or carry noise"):
+        pcc.build(pcc.Study(OSCILLATOR, lambda k, c: systems.oscillator(k, c + 0.01 * random.normal())))
 
 
 LATER = [
@@ -164,7 +372,17 @@ STUDIES = [
     (lambda: pcc.Study(OSCILLATOR, systems.oscillator, on_failure="retry"), '"retry"'),
     (lambda: pcc.Study(OSCILLATOR, systems.oscillator, answers="modes"), '"modes"'),
     (lambda: pcc.Study(OSCILLATOR, systems.oscillator, name="a/b"), "name"),
+    (
+        lambda: pcc.Study(OSCILLATOR, systems.oscillator, name=3),
+        "^name = 3: invalid type: integer `3`, expected a text",
+    ),
+    (lambda: pcc.Study(OSCILLATOR, systems.oscillator, seed=1.5), "^seed = 1.5: .*expected a whole number"),
+    (lambda: pcc.Study(OSCILLATOR, systems.oscillator, fit="fast"), '^fit = "fast": .*expected a table'),
+    (lambda: pcc.Study({"k": pcc.uniform("90", 110)}, systems.oscillator), '^k = .*lower = "90".*expected a number'),
+    (lambda: pcc.Study({"k": pcc.uniform(np.zeros(2), 110)}, systems.oscillator), "^k = .*expected a number"),
     (lambda: pcc.build("belt.toml"), "build takes a study, not a str"),
+    (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k="a", c=0.1), "takes a number for k, not 'a'"),
+    (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k=np.zeros(2), c=0.1), "takes a number for k, not array"),
     (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k=1.0), "takes the inputs k, c, not k"),
 ]
 

@@ -11,6 +11,7 @@ import sys
 
 import numpy as np
 import pytest
+from conftest import SHIPPED
 
 import pcc
 
@@ -80,7 +81,8 @@ def test_inspect_is_that_of_the_command(clutch, shipped):
     found = pcc.load(shipped / "clutch-r2.pcc").inspect()
     assert found == said
     assert clutch.names == [one["name"] for one in found["inputs"]]
-    assert "clutch-r2" in repr(clutch) and "<pre>" in clutch._repr_html_()
+    assert "clutch-r2" in repr(clutch) and "<pre" in clutch._repr_html_()
+    assert ">this is a surrogate of clutch-r2" in pcc.Surrogate.from_bytes(clutch.to_bytes())._repr_html_()
 
 
 OTHERS = {
@@ -119,6 +121,33 @@ def test_files_are_replaced_by_their_like(clutch, shipped, tmp_path):
         with pytest.raises(pcc.FileError, match="exists and "):
             write(path)
         assert path.read_bytes() == before
+
+
+def test_certificates_are_not_lost_without_a_word(built, oscillator, tmp_path):
+    path = tmp_path / "oscillator.pcc"
+    certified = pcc.Surrogate.from_bytes(built.to_bytes())
+    certified.certify(oscillator, runs=50)
+    certified.save(path)
+    certified.save(path)
+    bytes_of_certified = path.read_bytes()
+    with pytest.raises(
+        pcc.FileError, match=r"oscillator.pcc: has 1 certificate, which would be lost; .* overwrite=True"
+    ):
+        built.save(path)
+    # A certificate more loses none.
+    more = pcc.load(path)
+    more.certify(oscillator, runs=50, seed=2)
+    more.save(path)
+    for other in (certified, built, pcc.load(SHIPPED / "clutch-r1.pcc")):
+        with pytest.raises(pcc.FileError, match="has [12] certificates?, which would be lost"):
+            other.save(path)
+    assert pcc.load(path) == more and bytes_of_certified != path.read_bytes()
+    built.save(path, overwrite=True)
+    assert pcc.load(path) == built
+    # What is no surrogate is not replaced all the same.
+    (tmp_path / "study.toml").write_text("format = 1")
+    with pytest.raises(pcc.FileError, match="is not a surrogate"):
+        built.save(tmp_path / "study.toml", overwrite=True)
 
 
 def test_surrogates_have_no_hash(clutch):

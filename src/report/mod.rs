@@ -2,6 +2,7 @@
 
 mod build;
 mod campaign;
+mod campbell;
 mod certify;
 mod certify_plan;
 mod charts;
@@ -43,6 +44,7 @@ mod warnings;
 
 pub use build::{BuildReport, FailedRun, RecordedRuns};
 pub use campaign::{DesignReport, IngestReport, JournalModel, JournalReport};
+pub use campbell::{CampbellMode, CampbellPoint, campbell_chart};
 pub use certify::CertifyReport;
 pub use certify_plan::CertifyPlanReport;
 pub use charts::sensitivity_charts;
