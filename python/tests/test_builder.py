@@ -43,6 +43,28 @@ def test_processes_answer_with_joblib(built, oscillator):
     assert builder.result == built
 
 
+@pytest.mark.parametrize("scheduler", ["threads", "processes"])
+def test_dask_answers(scheduler, built, oscillator):
+    dask = pytest.importorskip("dask")
+    builder = pcc.Builder(oscillator)
+    while len(X := builder.ask()):
+        tasks = [dask.delayed(run)((oscillator, x)) for x in X]
+        builder.tell(X, dask.compute(*tasks, scheduler=scheduler, num_workers=2))
+    assert builder.result.to_bytes() == built.to_bytes()
+
+
+def test_a_dask_cluster_answers_in_any_order(built, oscillator):
+    distributed = pytest.importorskip("distributed")
+    builder = pcc.Builder(oscillator)
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None)
+    with cluster, distributed.Client(cluster) as client:
+        while len(X := builder.ask()):
+            rows = {client.submit(run, (oscillator, x)): row for row, x in enumerate(X)}
+            for future in distributed.as_completed(rows):
+                builder.tell(X[rows[future]][np.newaxis], [future.result()])
+    assert builder.result.to_bytes() == built.to_bytes()
+
+
 def test_processes_answer_with_futures(oscillator):
     study = pcc.Study(OSCILLATOR, systems.eigenvalues_of_oscillator)
     builder = pcc.Builder(study)
@@ -71,6 +93,11 @@ def test_answers_that_cannot_be_taken_are_refused(oscillator):
         builder.tell(X[:1] * (1 + 1e-12), answers(oscillator, X[:1]))
     with pytest.raises(pcc.TellError, match="answer 0 has no derivatives by k, c"):
         builder.tell(X[:1], [systems.oscillator(*X[0])])
+    with pytest.raises(pcc.TellError, match="rows 0 and 1 of X are the same point; answer it once"):
+        builder.tell(X[[0, 0]], answers(oscillator, X[:1]) * 2)
+    for not_a_list in ({0: 1.0}, {1.0}, map(float, "1"), "no"):
+        with pytest.raises(pcc.TellError, match="give a list with an answer for each row"):
+            builder.tell(X[:1], not_a_list)
     with pytest.raises(pcc.TellError, match="answer 0: the function has returned None"):
         builder.tell(X[:1], [None])
     with pytest.raises(pcc.BuildError, match="not answered yet"):
