@@ -35,7 +35,8 @@ def counts_failures(word: str) -> bool:
 def count(value: Any, name: str, least: int = 1, most: int = 2**63 - 1) -> int:
     """A whole number, of any type that has them."""
     try:
-        whole = int(value) if not isinstance(value, (str, bytes)) and value == int(value) else None
+        is_one = np.ndim(value) == 0 and not isinstance(value, (str, bytes))
+        whole = int(value) if is_one and value == int(value) else None
     except (TypeError, ValueError, OverflowError):
         whole = None
     if whole is None or isinstance(value, (bool, np.bool_)) or not least <= whole <= most:
@@ -46,9 +47,11 @@ def count(value: Any, name: str, least: int = 1, most: int = 2**63 - 1) -> int:
 def number(value: Any, what: str) -> float:
     """A number."""
     try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise QuestionError(f"{what} is {value!r}; give a number") from None
+        if np.ndim(value) == 0:
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise QuestionError(f"{what} is {value!r}; give a number")
 
 
 def text(value: Any, what: str) -> str:
@@ -76,7 +79,10 @@ def by_input(values: Any, name: str, example: str) -> dict[str, Any]:
 
 def condition(name: Any, value: Any) -> tuple[str, float, float]:
     """An input with both ends of the interval that it is confined to."""
-    ends = np.ravel(value) if np.ndim(value) else [value, value]
+    try:
+        ends = [value, value] if isinstance(value, (str, bytes)) else list(value)
+    except TypeError:
+        ends = [value, value]
     if len(ends) != 2:
         raise QuestionError(f"where: {name} is {value!r}; give a value, or the lower and the upper end of an interval")
     lower, upper = (number(end, f"where: {name}") for end in ends)

@@ -7,6 +7,8 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from . import _pcc
 from ._errors import AnswerError, QuestionError, RunError, StudyError
 from ._files import path_of
@@ -188,9 +190,11 @@ class Study:
 
 def _value_of(name: str, value: Any) -> float:
     try:
-        return float(value)
+        if np.ndim(value) == 0:
+            return float(value)
     except (TypeError, ValueError, OverflowError):
-        raise StudyError(f"answer() takes a number for {name}, not {value!r}") from None
+        pass
+    raise StudyError(f"answer() takes a number for {name}, not {value!r}")
 
 
 def _check_function(model: Any) -> None:

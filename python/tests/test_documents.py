@@ -11,7 +11,15 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r"(<!-- not run -->\n)?```python\n(.*?)```", re.DOTALL)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/how-to/python.md"])
+PAGES = [
+    "README.md",
+    "docs/how-to/python.md",
+    "docs/tutorials/clutch-from-python.md",
+    "docs/tutorials/brake-from-python.md",
+]
+
+
+@pytest.mark.parametrize("page", PAGES)
 def test_examples_run(page, tmp_path, monkeypatch):
     pytest.importorskip("pandas")
     monkeypatch.chdir(tmp_path)

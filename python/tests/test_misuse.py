@@ -114,6 +114,8 @@ QUESTIONS = [
     (lambda s: s.sample(100, seed=None), "seed is None"),
     (lambda s: s.sample(np.array([100])), "give a whole number"),
     (lambda s: s.sample(10**30), "give a whole number"),
+    (lambda s: s.sample(100, where={"mu": (np.array([0.1]), 0.2)}), "give a number|the lower and the upper end"),
+    (lambda s: s.sample(100, quantiles=[np.array([0.5])]), "give a number"),
     (lambda s: s.sample(100, quantiles=0.5), "give a list"),
     (lambda s: s.sample(100, replicates=-1), "replicates is -1"),
     (lambda s: s.sweep("mu"), "what is swept is a str; give a dict by inputs"),
@@ -382,7 +384,7 @@ STUDIES = [
     (lambda: pcc.Study({"k": pcc.uniform(np.zeros(2), 110)}, systems.oscillator), "^k = .*expected a number"),
     (lambda: pcc.build("belt.toml"), "build takes a study, not a str"),
     (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k="a", c=0.1), "takes a number for k, not 'a'"),
-    (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k=np.zeros(2), c=0.1), "takes a number for k, not array"),
+    (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k=np.zeros(1), c=0.1), "takes a number for k, not array"),
     (lambda: pcc.Study(OSCILLATOR, systems.oscillator).answer(k=1.0), "takes the inputs k, c, not k"),
 ]
 
