@@ -265,7 +265,7 @@ class Campbell(_Picture):
                 self._rows.append(row | {"unstable_share": mode["unstable_share"]})
                 drawn = [math.nan if hertz is None else hertz for hertz in frequency]
                 points[mode["mode"]].append((drawn, mode["unstable_share"]))
-        self._charts = [_pcc.campbell(surrogate, name, [float(value) for value in values], list(points.items()))]
+        self._charts = [surrogate.campbell(name, [float(value) for value in values], list(points.items()))]
 
     @property
     def points(self) -> Table:

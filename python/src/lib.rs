@@ -36,7 +36,7 @@ mod _pcc {
     #[pymodule_export]
     use super::compile::{build, certify, compare};
     #[pymodule_export]
-    use super::questions::{campbell, interval};
+    use super::questions::interval;
     #[pymodule_export]
     use super::study::Study;
     #[pymodule_export]

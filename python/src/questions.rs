@@ -1,7 +1,6 @@
 //! Questions as Python asks them; answers as JSON, text and pictures.
 
 use crate::background::Service;
-use crate::surrogate;
 use pcc::report::{
     CampbellMode, CampbellPoint, EvalReport, InspectReport, SurrogatePage, SweepReport, campbell_chart, page_points,
     sensitivity_charts, sweep_chart,
@@ -21,17 +20,15 @@ pub fn interval(hits: u64, samples: u64, level: f64) -> (f64, f64) {
 
 /// A mode as Python has it: its number, and at each value of the input the lower end, the median and the upper end of its
 /// frequency, and the share of samples in which it is unstable.
-type ModeAlong = (usize, Vec<([f64; 3], f64)>);
+pub type ModeAlong = (usize, Vec<([f64; 3], f64)>);
 
 /// A Campbell diagram as SVG; nothing if there is no such input.
-#[pyfunction]
-pub fn campbell(surrogate: &surrogate::Surrogate, input: &str, values: Vec<f64>, modes: Vec<ModeAlong>) -> String {
+pub fn campbell(surrogate: &Surrogate, input: &str, values: &[f64], modes: Vec<ModeAlong>) -> String {
     let point = |(frequency, unstable_share)| CampbellPoint { frequency, unstable_share };
     let mode = |(mode, points): ModeAlong| CampbellMode { mode, points: points.into_iter().map(point).collect() };
     let modes: Vec<CampbellMode> = modes.into_iter().map(mode).collect();
-    let surrogate = &surrogate.artifact.surrogate;
     let input = surrogate.inputs.inputs().iter().find(|known| known.name == input);
-    input.map_or_else(String::new, |input| campbell_chart(&surrogate.provenance.study_name, input, &values, &modes))
+    input.map_or_else(String::new, |input| campbell_chart(&surrogate.provenance.study_name, input, values, &modes))
 }
 
 /// What is asked.

@@ -3,7 +3,7 @@
 use crate::background::in_background;
 use crate::errors::raised;
 use crate::pool::pool;
-use crate::questions::{Asked, answer, json, page};
+use crate::questions::{Asked, ModeAlong, answer, campbell, json, page};
 use numpy::{Complex64, PyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pcc::report::InspectReport;
 use pcc::{Artifact, Format, GivenPoints, PointError, Silent, Verdict, decode, encode};
@@ -118,6 +118,11 @@ impl Surrogate {
     ) -> PyResult<(String, String, Vec<String>)> {
         in_background(py, pool()?, progress, |service| answer(&self.artifact.surrogate, &asked, service))?
             .map_err(|error| raised(py, error))
+    }
+
+    /// Frequencies of modes along an input, as SVG.
+    fn campbell(&self, input: &str, values: Vec<f64>, modes: Vec<ModeAlong>) -> String {
+        campbell(&self.artifact.surrogate, input, &values, modes)
     }
 
     /// What `pcc report` writes, as HTML.
