@@ -199,7 +199,7 @@ pub(super) fn judge(
     }
     if purpose.tolerance.is_some() {
         let has_few = judgement.is_blind() && (1..FEW_RARE).contains(&judge.rarest(&classes));
-        let more = has_few.then(|| Judge::new(surrogate, runs, points, observer)).transpose()?;
+        let more = has_few.then(|| Judge::new(surrogate, (runs, masses), points, observer)).transpose()?;
         let judge = more.as_ref().unwrap_or(&judge);
         judgement.excess.clone_from(&judge.block().excess);
         judgement.rarer = judge.rarer(judgement.missed());

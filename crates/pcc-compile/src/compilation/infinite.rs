@@ -70,11 +70,12 @@ fn infinite_in(
     let alone = Numbers { modes: Vec::new(), reals: vec![1] };
     let surrogate = super::record::of_fits(study, &output(OutputKind::Closed, &alone, &[]), &[fit]);
     let predicted = &at_judged_points(&surrogate, POINTS, observer)?.components[0];
+    let point = |at| judged_point((&study.inputs, study.seed), at);
     let runs = TrainedDomain::of(&study.inputs, samples.points());
-    let is_between_runs = |at: &usize| runs.as_ref().is_none_or(|runs| runs.holds(&judged_point(&surrogate, *at)));
+    let is_between_runs = |at: &usize| runs.as_ref().is_none_or(|runs| runs.holds(&point(*at)));
     let between = (0..predicted.len()).filter(is_between_runs);
     let nearest = between.reduce(|a, b| if predicted[b].abs() < predicted[a].abs() { b } else { a });
     let zero = if is_one_sided { error } else { error.max(ZERO * spread) };
     let is_zero = |at: &usize| predicted[*at].abs() <= zero;
-    Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&judged_point((&study.inputs, study.seed), at))))
+    Ok(nearest.filter(is_zero).map(|at| study.inputs.physical(&point(at))))
 }

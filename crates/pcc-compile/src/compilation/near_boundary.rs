@@ -130,7 +130,7 @@ mod tests {
         let mut rarer = vec![false; POINTS];
         let first = block.excess.iter().position(|&excess| excess <= 0.0).unwrap();
         rarer[first] = true;
-        let tried = Samples::new(2, judged_point(&surrogate, first));
+        let tried = Samples::new(2, judged_point((&surrogate.inputs, surrogate.training.seed), first));
         assert_eq!(near_boundary(&surrogate, (&block.excess, &rarer), &tried, (6, true)).len(), 6);
     }
 }

@@ -87,7 +87,7 @@ impl Lines<'_> {
             config: config.map(Spanned::into_inner).unwrap_or_default(),
             parameters: self.parameters(&mut raw, &constants, inputs)?,
             attempts: self.attempts(&mut raw)?,
-            answers: self.table(&mut raw, constants)?,
+            answers: self.table(&mut raw, constants, None)?,
         }))
     }
 
