@@ -18,8 +18,8 @@ pub fn interval(hits: u64, samples: u64, level: f64) -> (f64, f64) {
     (lower, upper)
 }
 
-/// A mode as Python has it: its number, and at each value of the input the lower end, the median and the upper end of its
-/// frequency, and the share of samples in which it is unstable.
+/// A mode as Python has it: its number, and at each value of the input the lower end, the median and the upper end of
+/// its frequency, and the share of samples in which it is unstable.
 pub type ModeAlong = (usize, Vec<([f64; 3], f64)>);
 
 /// A Campbell diagram as SVG; nothing if there is no such input.

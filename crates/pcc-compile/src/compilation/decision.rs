@@ -206,8 +206,9 @@ pub(super) fn judge(
     }
     let share = found[0].share;
     let proportion_error = judgement.error.map(|error| error / share.reference()).filter(|error| error.is_finite());
-    // Residuals of growth rates say nothing of what modes do that are not followed between the runs.
-    let proportion_error = proportion_error.filter(|_| !is_guess);
+    // Residuals of growth rates say nothing of what modes do that are not followed between the runs; runs that are
+    // misjudged do.
+    let proportion_error = proportion_error.filter(|_| !is_guess || misjudged > 0.0);
     let decision = Decision { max_re_residuals, proportion_error };
     let previous = Some(Previous { surrogate: surrogate.clone(), at });
     Ok(Judgement { decision, unlisted, previous, ..judgement })

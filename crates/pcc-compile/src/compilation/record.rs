@@ -91,29 +91,26 @@ pub(super) fn surrogate(
     surrogate.verdict.band = level.band;
     surrogate.verdict.tolerance = tolerance(evaluations.runs());
     surrogate.verdict.is_self_adjoint = evaluations.is_self_adjoint();
-    if let Some(missed) = missed_of_marginal(&surrogate, &level.values, fitted, evaluations.runs()) {
+    if let Some(missed) = missed_of_marginal(&surrogate, level, fitted, evaluations.runs()) {
         surrogate.verdict.tolerance = surrogate.verdict.tolerance.max(missed);
     }
     surrogate
 }
 
 /// What the surrogate cannot tell from zero, with [`SAFETY`], where the model is marginal at runs and the surrogate
-/// knows zero well there; `None` if it does not, or misses nothing.
-fn missed_of_marginal(
-    surrogate: &Surrogate,
-    values: &[Vec<f64>],
-    fitted: &[ComponentResult],
-    runs: &[Run],
-) -> Option<f64> {
+/// knows zero well there, with these runs and without them; `None` if it does not, or misses nothing.
+fn missed_of_marginal(surrogate: &Surrogate, level: &Level, fitted: &[ComponentResult], runs: &[Run]) -> Option<f64> {
     let left_out = fitted.iter().map(|fit| fit.result.leave_one_out_residuals.as_ref());
     let left_out: Vec<&Vec<f64>> = left_out.collect::<Option<_>>()?;
-    if left_out.len() != values.len() || left_out.iter().any(|rest| rest.len() != runs.len()) {
+    if left_out.len() != level.values.len() || left_out.iter().any(|rest| rest.len() != runs.len()) {
         return None;
     }
     let residuals: Vec<Vec<f64>> = (0..runs.len()).map(|i| left_out.iter().map(|rest| rest[i]).collect()).collect();
     let all: Vec<usize> = (0..runs.len()).collect();
-    let missed = excess_of_marginal(surrogate, values, &residuals, runs, &all);
-    let missed = SAFETY * missed.into_iter().map(f64::abs).reduce(f64::max)?;
+    let mut missed = excess_of_marginal(surrogate, &level.values, &residuals, runs, &all);
+    let marginal = level.samples.points().zip(runs).filter(|(_, run)| run.spectrum.top().excess == 0.0);
+    missed.extend(marginal.map(|(point, _)| surrogate.top(&surrogate.evaluate(point)).excess));
+    let missed = SAFETY * missed.into_iter().map(f64::abs).reduce(f64::max).filter(|missed| *missed > 0.0)?;
     let mut others: Vec<f64> = runs.iter().map(|run| run.spectrum.top().excess.abs()).filter(|e| *e > 0.0).collect();
     others.sort_by(f64::total_cmp);
     others.get(others.len() / 2).filter(|median| missed <= KNOWN * **median).map(|_| missed)

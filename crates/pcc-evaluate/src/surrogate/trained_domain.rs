@@ -1,8 +1,8 @@
 //! The box that the model runs of a surrogate spanned.
 //!
 //! Expansions are polynomials in the standardized variables ξ. Runs of a design fill the interval of a uniform ξ up to
-//! half a stratum at either end. Of other variables they leave out the tails: there the surrogate extrapolates. Runs that
-//! somebody gave fill nothing but what they span.
+//! half a stratum at either end. Of other variables they leave out the tails: there the surrogate extrapolates. Runs
+//! that somebody gave fill nothing but what they span.
 
 use super::Surrogate;
 use crate::probability::inputs::{Input, InputSpace};
@@ -13,8 +13,8 @@ const MOST: f64 = 0.5;
 /// What is foreseen where no run was left out: what hardly moves a share.
 const LITTLE: f64 = 0.01;
 
-/// For every input whose standardized variable is not uniform, and for every input of runs that were given, the smallest
-/// and the largest value at a model run.
+/// For every input whose standardized variable is not uniform, and for every input of runs that were given, the
+/// smallest and the largest value at a model run.
 ///
 /// Intervals are of ξ, in which polynomials are: a sample is compared without rounding.
 ///
