@@ -399,6 +399,22 @@ fn a_narrow_strip_of_flutter_between_crossing_modes_is_found() {
     }
 }
 
+/// The boundary of a single input is some points: errors there are those of one place, whatever the number of runs.
+#[test]
+fn errors_at_the_boundary_of_a_single_input_do_not_average_out() {
+    let text = "format = 1\nname = \"strip\"\n[model]\nkind = \"matrices\"\nM = { diagonal = [1, 1] }\n\
+         C = { diagonal = [0.5, 0.5] }\nK = [[\"k1\", 120], [-120, 4000]]\n[inputs]\n\
+         k1 = { distribution = \"uniform\", lower = 500.0, upper = 12000.0 }\n";
+    for seed in [3, 4, 6] {
+        let study = Study { seed, ..Study::from_toml(text).unwrap() };
+        let surrogate = build(&study, &Silent).unwrap();
+        let compared = ModelSample::new(&study, 100_000, 7, &Silent).unwrap().compare(&surrogate).unwrap();
+        let [model, found] = compared.unstable();
+        let estimated = surrogate.decision.proportion_error.unwrap() * (1.0 - found);
+        assert!((found - model).abs() <= 2.0 * estimated + 3e-5, "seed {seed}: {found} for {model} ± {estimated}");
+    }
+}
+
 /// A spring that is not there in a quarter of the cases: the mass is marginal then, if its damper is positive.
 #[test]
 fn a_stiffness_that_vanishes_in_a_part_of_the_cases_is_marginal_there() {

@@ -11,7 +11,7 @@
 //! margin, is near zero change sides, and runs are weighted by how near their own is, w_i = 1/(1 + (e_i/median)²).
 //! Marginal points do not say how near they are, so they are tried evenly spread. Errors at distant points of the
 //! stability boundary are taken as independent, about one per design point, so with the effective number of runs n =
-//! (Σw)²/Σw² the estimate is
+//! (Σw)²/Σw², or n = 1 for a single input, whose boundary is some points, the estimate is
 //!
 //! ε² = (rms(Δp)² (1 + 1/√k)² + 1/T²)/n + mean(Δp)² [only if beyond four standard errors] + δ² + f²,
 //!
@@ -254,14 +254,14 @@ impl Found {
         let (reducible_error, error) = match (before, former) {
             (Some(Before { is_regrouped: false, .. }), Some(former)) if blind.len() >= LEAST_BLIND.min(seen.len()) => {
                 let by_blind = judge.shares(class, blind, seen.len() - blind.len())?;
-                let error = |unseen| Some(error_of_share(&by_blind, judge.effective_runs(), former, at, unseen));
+                let error = |unseen| Some(error_of_share(&by_blind, judge.independent_errors(), former, at, unseen));
                 (error(0.0), error(unseen))
             }
             (Some(_), Some(former)) => {
                 // Residuals that flatter, and all of the change between the levels.
                 let honest = judge.shares(class, &honest_residuals(seen, blind), 0)?;
                 let change = at.proportion - former.proportion;
-                (None, Some(error_of_share(&honest, judge.effective_runs(), at, at, unseen).hypot(change)))
+                (None, Some(error_of_share(&honest, judge.independent_errors(), at, at, unseen).hypot(change)))
             }
             _ => (None, None),
         };
@@ -360,7 +360,7 @@ pub(super) fn judge_by_nodes(surrogate: &Surrogate, values: &[Vec<f64>], runs: &
 }
 
 /// ε of the module's head, in points of probability, where shares below `unseen` are not seen.
-fn error_of_share(shares: &Shares, effective_runs: f64, previous: At, now: At, unseen: f64) -> f64 {
+fn error_of_share(shares: &Shares, independent: f64, previous: At, now: At, unseen: f64) -> f64 {
     let square = shares.mean_of(|share| share * share);
     let mean = shares.mean_of(|share| share);
     let count = shares.effective_count();
@@ -370,7 +370,7 @@ fn error_of_share(shares: &Shares, effective_runs: f64, previous: At, now: At, u
     let left = if square_former > 0.0 { square_now / (square_now + square_former) } else { 0.5 };
     let change = (now.proportion - previous.proportion) * left;
     let cautious = square * (1.0 + count.sqrt().recip()).powi(2);
-    ((cautious + unseen * unseen) / effective_runs + systematic * systematic + change * change).sqrt()
+    ((cautious + unseen * unseen) / independent + systematic * systematic + change * change).sqrt()
 }
 
 /// The quantile of sorted values by linear interpolation between order statistics (type 7 of Hyndman and Fan 1996).

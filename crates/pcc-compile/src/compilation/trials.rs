@@ -140,8 +140,10 @@ impl<'a> Judge<'a> {
         self.observer
     }
 
-    pub fn effective_runs(&self) -> f64 {
-        effective_count(&self.weights)
+    /// How many errors at distant points of the boundary average out: about one per run. Of a single input the boundary
+    /// is some points, and there is nothing to average.
+    pub fn independent_errors(&self) -> f64 {
+        if self.surrogate.inputs.dimension() == 1 { 1.0 } else { effective_count(&self.weights) }
     }
 
     /// By how much max Re can move at most if every component is larger by its residual: |√(d + e) ∓ √d| ≤ √|e| for a
