@@ -60,8 +60,8 @@ pub struct ModeReport {
     pub im: f64,
     /// Im λ/2π.
     pub frequency_hz: f64,
-    /// −Re λ/|λ|.
-    pub damping_ratio: f64,
+    /// −Re λ/|λ|; null where λ is zero.
+    pub damping_ratio: Option<f64>,
     /// How far λ may be from the true one because the solver rounds, in 1/s.
     pub error: f64,
     /// stable, marginal, flutter or divergence.
@@ -235,7 +235,7 @@ fn row((label, mode): (&Label, &Option<ModeAtPoint>)) -> Option<ModeReport> {
         re: eigenvalue.re,
         im: eigenvalue.im,
         frequency_hz: eigenvalue.im / TAU,
-        damping_ratio: -eigenvalue.re / eigenvalue.norm(),
+        damping_ratio: (eigenvalue.norm() > 0.0).then(|| -eigenvalue.re / eigenvalue.norm()),
         error,
         verdict: verdict.name(),
     })
@@ -289,7 +289,7 @@ impl ModesReport {
                 significant(mode.frequency_hz, 6),
                 significant(mode.re, 6),
                 significant(mode.im, 6),
-                significant(mode.damping_ratio, 4),
+                mode.damping_ratio.map_or("–".to_owned(), |ratio| significant(ratio, 4)),
                 significant(mode.error, 1),
                 mode.verdict.to_owned(),
             ]);

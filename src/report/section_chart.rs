@@ -9,14 +9,15 @@ use pcc_evaluate::surrogate::Surrogate;
 /// Points of a curve.
 const POINTS: usize = 61;
 
-/// Of inputs without bounds, this much probability is left out at either end.
+/// Where it is not known between which values of an input the model was run, this much probability is left out at
+/// either end of a law with tails.
 const TAIL: f64 = 0.005;
 
 /// Level of the intervals.
 const LEVEL: &str = "0.9";
 
-/// max Re λ over input `j`, from its lower to its upper bound, with intervals at points if the surrogate keeps what its
-/// runs left out miss.
+/// max Re λ over input `j`, from its lower to its upper bound or between the model runs, with intervals at points if the
+/// surrogate keeps what its runs left out miss.
 pub(super) fn section_chart(surrogate: &Surrogate, j: usize) -> Chart {
     let input = &surrogate.inputs.inputs()[j];
     let (values, standardized) = section(surrogate, j);
@@ -56,9 +57,11 @@ fn section(surrogate: &Surrogate, j: usize) -> (Vec<f64>, Vec<Vec<f64>>) {
     let inputs = surrogate.inputs.inputs();
     let marginal = &inputs[j].marginal;
     let quantile = |unit: f64| marginal.physical(marginal.standardized_quantile(unit));
-    let [lower, upper] = marginal.support();
-    let from = if lower.is_finite() { lower } else { quantile(TAIL) };
-    let to = if upper.is_finite() { upper } else { quantile(1.0 - TAIL) };
+    let [from, to] = match surrogate.trained_interval(j) {
+        Some(trained) => trained,
+        None if marginal.is_divisible() => marginal.support(),
+        None => [quantile(TAIL), quantile(1.0 - TAIL)],
+    };
     let at = |i: usize| i as f64 / (POINTS - 1) as f64;
     let mut values: Vec<f64> = match marginal.is_discrete() {
         true => (0..POINTS).map(|i| quantile(TAIL + (1.0 - 2.0 * TAIL) * at(i))).collect(),
@@ -109,10 +112,14 @@ mod tests {
     }
 
     #[test]
-    fn unbounded_inputs_are_drawn_between_quantiles() {
+    fn laws_with_tails_are_drawn_between_the_runs() {
         let surrogate = shipped("clutch-normal-r8");
-        let unbounded = surrogate.inputs.inputs().iter().position(|input| !input.marginal.support()[0].is_finite());
-        let curve = line(&section_chart(&surrogate, unbounded.unwrap()), "max Re λ")[0].clone();
-        assert!(curve.iter().all(|[x, y]| x.is_finite() && y.is_finite()) && curve.len() == POINTS);
+        let tails =
+            (0..surrogate.inputs.dimension()).filter(|&j| !surrogate.inputs.inputs()[j].marginal.is_divisible());
+        for j in tails {
+            let curve = line(&section_chart(&surrogate, j), "max Re λ")[0].clone();
+            let [from, to] = surrogate.trained_interval(j).unwrap().map(short);
+            assert_eq!((curve[0][0], curve[POINTS - 1][0], curve.len()), (from, to, POINTS));
+        }
     }
 }

@@ -64,7 +64,10 @@ impl Server {
             }
             shared.is_over.store(true, Ordering::SeqCst);
             // It waits for a client: this is the last one.
-            let _ = TcpStream::connect(reachable(self.address));
+            while !accepting.is_finished() {
+                let _ = TcpStream::connect_timeout(&reachable(self.address), LOOK);
+                thread::sleep(LOOK);
+            }
         });
         shared.answered.into_inner()
     }

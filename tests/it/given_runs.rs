@@ -336,3 +336,62 @@ fn a_table_that_is_not_enough_gives_what_it_has_and_says_so() {
     let text = in_one_line(&String::from_utf8(output.stdout).unwrap());
     assert!(text.contains("the build ended after 14 model runs because no other runs were given"), "{text}");
 }
+
+/// One mode over two inputs, in a table of 6 by 6 rows: λ = −1 + x ± (10 + y)i.
+fn one_mode(header: &str, cells: impl Fn(f64, f64) -> String) -> (tempfile::TempDir, String) {
+    let folder = crate::support::studies::folder_with(
+        "format = 1\nname = \"one\"\n[model]\nkind = \"table\"\n[inputs]\n\
+         x = { distribution = \"uniform\", lower = 0.0, upper = 2.0 }\n\
+         y = { distribution = \"uniform\", lower = 0.0, upper = 1.0 }\n",
+    );
+    let mut table = format!("{header}\n");
+    for (i, j) in (0..36).map(|k| (f64::from(k % 6), f64::from(k / 6))) {
+        let (x, y) = ((2.0 * i + 1.0 + 0.1 * j) / 6.5, (j + 0.5) / 6.0);
+        writeln!(table, "{x},{y},{}", cells(x, y)).unwrap();
+    }
+    fs::write(folder.path().join("runs.csv"), &table).unwrap();
+    (folder, table)
+}
+
+/// Solvers of complex matrices give conjugates but for rounding: they are no modes of their own.
+#[test]
+fn conjugates_that_are_rounded_are_those_of_their_modes() {
+    let pair = |off: f64| {
+        move |x: f64, y: f64| {
+            format!("{},{},{},{}", x - 1.0, 10.0 + y, (x - 1.0) * (1.0 + off), -(10.0 + y) * (1.0 + off))
+        }
+    };
+    for off in [0.0, 2e-16, 1e-12] {
+        let (folder, _) = one_mode("x,y,re_1,im_1,re_2,im_2", pair(off));
+        let report = output(folder.path(), &["build", "study.toml", "--data", "runs.csv", "--json"]);
+        let report: Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(report["components"].as_array().unwrap().len(), 2, "{off}: {report}");
+        let inspected = output(folder.path(), &["inspect", "one.pcc", "--json"]);
+        assert!(!inspected.contains("inf"), "a place without a run where there is none: {inspected}");
+        let found: Value =
+            serde_json::from_str(&output(folder.path(), &["eval", "one.pcc", "-n", "20000", "--json"])).unwrap();
+        assert!((found["unstable_proportion"].as_f64().unwrap() - 0.5).abs() < 0.02, "{found}");
+    }
+}
+
+#[test]
+fn columns_that_nobody_has_named_are_no_eigenvalues() {
+    let (folder, _) = one_mode("x,y,real_01,real_02", |x, _| format!("{},{}", -1.0 - x, -2.0));
+    let error = refusal(folder.path(), &["build", "study.toml", "--data", "runs.csv"]);
+    assert!(error.contains("real_01") && error.contains("re_"), "{error}");
+}
+
+#[test]
+fn too_few_runs_are_counted_and_causes_of_failures_are_told() {
+    let (folder, table) = one_mode("x,y,re_1,im_1", |x, y| format!("{},{}", x - 1.0, 10.0 + y));
+    let two: Vec<&str> = table.lines().take(2).chain(table.lines().last()).collect();
+    fs::write(folder.path().join("two.csv"), two.join("\n") + "\n").unwrap();
+    let error = refusal(folder.path(), &["build", "study.toml", "--data", "two.csv", "--holdout", "0.5"]);
+    assert!(error.contains("at least 2 model runs, and here are 1"), "{error}");
+    let (folder, _) = one_mode("x,y,re_1,im_1,error", |_, _| ",,diverged".to_owned());
+    let study = fs::read_to_string(folder.path().join("study.toml")).unwrap();
+    let study = study.replace("kind = \"table\"", "kind = \"table\"\non_failure = \"skip\"");
+    fs::write(folder.path().join("study.toml"), study).unwrap();
+    let error = in_one_line(&refusal(folder.path(), &["build", "study.toml", "--data", "runs.csv"]));
+    assert!(error.contains("36 model runs failed") && error.contains("diverged"), "{error}");
+}

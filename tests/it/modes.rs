@@ -130,7 +130,7 @@ fn points_that_are_none_are_refused() {
         (&["--at", "c=1", "--over", "c=0..1:3"], "leave one of them out"),
         (&["--over", "x=0..1:3"], "there is no input x"),
         (&["--over", "c=0..1:1"], "at least 2 points"),
-        (&["--over", "c=0..1:1000000"], "more than 100000"),
+        (&["--over", "c=0..1:1000000"], "more than 5000"),
         (&["--chart", "m.svg"], "--over"),
         (&["--over", "c=0..1:3", "--table", "study.toml"], "would replace"),
     ] {

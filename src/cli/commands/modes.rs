@@ -18,8 +18,8 @@ use std::path::PathBuf;
 /// Columns that a table of modes has at its end.
 const COLUMNS: &str = "max_re,verdict";
 
-/// Points of a line at most: each is a model run, and a picture shows no more.
-const MOST_POINTS: u32 = 100_000;
+/// Points of a line at most: each is a model run, a picture shows no more, and following takes the square of them.
+const MOST_POINTS: u32 = 5_000;
 
 /// What the help ends with.
 const EXAMPLES: &str = "\

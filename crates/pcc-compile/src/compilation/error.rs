@@ -67,6 +67,14 @@ pub enum BuildError {
         /// Why it did.
         cause: String,
     },
+    /// Fewer runs were given, or are left, than a fit takes.
+    #[error("a fit takes at least {least} model runs, and here are {runs}; give more, or hold fewer out")]
+    TooFewRuns {
+        /// Runs that there are.
+        runs: usize,
+        /// Runs that it takes.
+        least: usize,
+    },
     /// There are too many candidate terms.
     #[error(transparent)]
     IndexSet(#[from] IndexSetError),

@@ -197,11 +197,6 @@ impl<'a> Evaluations<'a> {
         Sizes { design: count(Origin::Design), given: count(Origin::Given), chosen: count(Origin::Chosen) }
     }
 
-    /// Whether sample `i` is a point of the design.
-    pub fn is_of_design(&self, i: usize) -> bool {
-        self.origins[self.answered[i]] == Origin::Design
-    }
-
     /// Whether sample `i` was chosen beside the design, so that it stands for no others.
     pub fn is_chosen(&self, i: usize) -> bool {
         self.origins[self.answered[i]] == Origin::Chosen
@@ -313,6 +308,9 @@ impl<'a> Evaluations<'a> {
         let (failed, answered) = (self.failed(), self.runs.len());
         if failed <= answered && answered >= LEAST_RUNS {
             return Ok(());
+        }
+        if failed == 0 {
+            return Err(BuildError::TooFewRuns { runs: answered, least: LEAST_RUNS });
         }
         let first = self.campaign.ledger.and_then(|ledger| ledger.failures().into_iter().next());
         let describe = |failure: Failure| (self.study.inputs.describe(&failure.point), failure.cause);

@@ -61,7 +61,17 @@ impl<'a> GivenLevels<'a> {
         let part = |(start, &end): (usize, &usize)| rest[start..end].to_vec();
         let mut levels: VecDeque<Vec<usize>> = [0, ends[0], ends[1]].into_iter().zip(&ends).map(part).collect();
         levels.retain(|level| !level.is_empty());
-        levels.iter_mut().last().into_iter().for_each(|last| last.extend(&failed));
+        // Failures are as frequent among the runs that are taken as among all.
+        let mut failed = failed;
+        if !answered.is_empty() && !rest.is_empty() {
+            failed.truncate((failed.len() * rest.len()).div_ceil(answered.len()));
+        }
+        match levels.back_mut() {
+            Some(last) => last.extend(&failed),
+            // What they say is the cause that there is no level.
+            None if !failed.is_empty() => levels.push_back(failed),
+            None => {}
+        }
         Ok(Some(Self { data, levels, validating, held_out }))
     }
 

@@ -383,7 +383,7 @@ impl<'a> Levels<'a> {
         let known = surrogate.training.counts.values as usize;
         let samples = self.evaluations.samples();
         // Points chosen near the boundary say nothing of a share.
-        let later: Vec<usize> = (known..samples.len()).filter(|&i| self.evaluations.is_of_design(i)).collect();
+        let later: Vec<usize> = (known..samples.len()).filter(|&i| !self.evaluations.is_chosen(i)).collect();
         let points: Vec<&[f64]> = later.iter().map(|&i| samples.point(i)).collect();
         let block = evaluate_points(surrogate, &Plan::new(surrogate), &points);
         let differs = |(&i, &excess): (&usize, &f64)| {

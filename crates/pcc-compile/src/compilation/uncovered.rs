@@ -47,6 +47,9 @@ pub(super) fn uncovered(
     let mut is_lonely = vec![false; POINTS];
     found.into_iter().flatten().for_each(|i| is_lonely[i] = true);
     let lonely: Vec<usize> = (0..POINTS).filter(|&i| is_lonely[i]).collect();
+    if lonely.is_empty() {
+        return Ok(Uncovered { share: 0.0, place: Vec::new() });
+    }
     let ends = |values: &mut dyn Iterator<Item = f64>| {
         values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lower, upper], x| [lower.min(x), upper.max(x)])
     };

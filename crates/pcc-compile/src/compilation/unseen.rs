@@ -101,7 +101,7 @@ fn bends(followed: &Followed<'_>, fits: &GroupFits<'_>, pair: &[Group; 2], trial
     let error = |group: &Group| fits.get(group).map_or(f64::INFINITY, |fit| left_out_distance(fit, group, followed));
     let alone = pair.iter().map(error).fold(0.0, f64::max);
     let largest = followed.runs.iter().map(|run| run.spectrum.largest()).fold(0.0, f64::max);
-    alone > BENT * largest && MENDED * error(trial) < alone
+    alone.is_finite() && alone > BENT * largest && MENDED * error(trial) < alone
 }
 
 /// Whether a mode of a complex group is slower at some runs than at others, so that it may meet its conjugate.

@@ -56,7 +56,9 @@ impl Label {
     fn of(name: &str) -> Option<Self> {
         let number = |digits: &str| {
             let is_number = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
-            is_number.then(|| digits.parse().ok()).flatten()
+            // As it is written in other columns: re_01 is none.
+            let number = is_number.then(|| digits.parse::<u64>().ok()).flatten();
+            number.filter(|number| number.to_string() == digits)
         };
         let mode = name.strip_prefix("re_").and_then(number).map(Self::Mode);
         mode.or_else(|| name.strip_prefix("real_").and_then(number).map(Self::Real))
@@ -179,7 +181,7 @@ impl Columns {
             return Err(DataError::NoEigenvalues { file: file.to_owned(), header: header.shown() });
         }
         let slots = labels.into_iter().map(|label| header.slot(label, inputs)).collect::<Result<Vec<_>, _>>()?;
-        let error = header.take(ERROR)?;
+        let error = if inputs.iter().any(|input| input == ERROR) { None } else { header.take(ERROR)? };
         for (at, name) in names.iter().enumerate().filter(|(at, _)| !header.taken[*at]) {
             if let Some(number) = name.strip_prefix("im_").filter(|rest| Label::of(&format!("re_{rest}")).is_some()) {
                 let remedy = "add it";

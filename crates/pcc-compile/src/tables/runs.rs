@@ -300,11 +300,20 @@ impl Cells<'_> {
     }
 }
 
-/// Turns lower halves of pairs whose upper halves are not given.
+/// Turns lower halves of pairs whose upper halves are not given. Solvers of complex matrices give conjugates but for
+/// rounding.
 fn with_upper_halves(answer: &mut Answer) {
-    for number in 0..answer.eigenvalues.len() {
+    /// Eigenvalues nearer to each other than this share of the largest are one.
+    const ROUNDING: f64 = 1e-6;
+    let near = ROUNDING * answer.eigenvalues.iter().map(|lambda| lambda.norm()).fold(0.0, f64::max);
+    let is_upper = |lambda: Complex<f64>| {
+        let others = answer.eigenvalues.iter().filter(|other| other.im > 0.0);
+        others.into_iter().any(|other| (other - lambda.conj()).norm() <= near)
+    };
+    let has_upper: Vec<bool> = answer.eigenvalues.iter().map(|lambda| is_upper(*lambda)).collect();
+    for (number, has_upper) in has_upper.into_iter().enumerate() {
         let lambda = answer.eigenvalues[number];
-        if lambda.im < 0.0 && !answer.eigenvalues.contains(&lambda.conj()) {
+        if lambda.im < 0.0 && !has_upper {
             answer.eigenvalues[number] = lambda.conj();
             let own = answer.slopes.iter_mut().filter(|(of, _)| *of == number);
             own.flat_map(|(_, slopes)| slopes).for_each(|slope| *slope = slope.conj());

@@ -339,7 +339,7 @@ struct Sparse {
 impl Solution {
     /// Drops the smallest terms as long as they are together a small share of the leave-one-out error; {0} stays.
     fn without_negligible_terms(self, dropped_share: f64, resolution: f64) -> Sparse {
-        let error = typical(&self.left_out).max(resolution);
+        let error = typical(&self.left_out, resolution).max(resolution);
         let mut order: Vec<usize> = (0..self.indices.len()).filter(|&k| !self.indices[k].is_constant()).collect();
         order.sort_by(|&a, &b| self.coefficients[a].abs().total_cmp(&self.coefficients[b].abs()).then(a.cmp(&b)));
         let (mut kept, mut dropped) = (vec![true; self.indices.len()], DVector::zeros(self.residuals.len()));
@@ -363,10 +363,12 @@ impl Solution {
 /// The size of residuals where few are much larger than all others, which have nothing to say of the rest: their
 /// geometric mean, brought to the standard deviation of a normal distribution, e^((γ + ln 2)/2) times as large; or
 /// their root mean square, if that is smaller.
-fn typical(residuals: &DVector<f64>) -> f64 {
+fn typical(residuals: &DVector<f64>, resolution: f64) -> f64 {
     let count = residuals.len() as f64;
     let root_mean_square = (residuals.norm_squared() / count).sqrt();
-    let logarithm = residuals.iter().map(|rest| rest.abs().max(f64::MIN_POSITIVE).ln()).sum::<f64>() / count;
+    // One that happens to be zero says nothing.
+    let least = resolution.max(f64::MIN_POSITIVE);
+    let logarithm = residuals.iter().map(|rest| rest.abs().max(least).ln()).sum::<f64>() / count;
     let to_deviation = 0.5 * (EULER_GAMMA + std::f64::consts::LN_2);
     root_mean_square.min((logarithm + to_deviation).exp())
 }

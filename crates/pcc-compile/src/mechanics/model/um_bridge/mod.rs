@@ -41,7 +41,10 @@ pub fn check_url(url: &str) -> Result<(), &'static str> {
     let is_plain = address.scheme_str() == Some("http") && address.query().is_none();
     let has_host = address.host().is_some_and(|host| !host.is_empty());
     let has_no_user = address.authority().is_some_and(|authority| !authority.as_str().contains('@'));
-    if is_plain && has_host && has_no_user { Ok(()) } else { Err(URL) }
+    // A port that is none is no reason to ask another.
+    let port = address.authority().and_then(|authority| authority.as_str().rsplit(']').next()?.split_once(':'));
+    let has_port = port.is_none() || address.port_u16().is_some();
+    if is_plain && has_host && has_no_user && has_port { Ok(()) } else { Err(URL) }
 }
 
 /// What is known about a server's model before it is asked.
