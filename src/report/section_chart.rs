@@ -16,8 +16,8 @@ const TAIL: f64 = 0.005;
 /// Level of the intervals.
 const LEVEL: &str = "0.9";
 
-/// max Re λ over input `j`, from its lower to its upper bound or between the model runs, with intervals at points if the
-/// surrogate keeps what its runs left out miss.
+/// max Re λ over input `j`, from its lower to its upper bound or between the model runs, with intervals at points if
+/// the surrogate keeps what its runs left out miss.
 pub(super) fn section_chart(surrogate: &Surrogate, j: usize) -> Chart {
     let input = &surrogate.inputs.inputs()[j];
     let (values, standardized) = section(surrogate, j);
