@@ -183,6 +183,8 @@ fn what_commands_print_satisfies_their_schemas() {
         "eval s.pcc -n 20000 --shard 1/2 --part 1.part",
         "merge 0.part --part first.part",
         "merge 0.part 1.part",
+        "modes clutch-r2.toml --at mu=0.3",
+        "modes clutch-r2.toml --over mu=0..0.5:11 --chart modes.svg --table modes.csv",
         "reference clutch-r2.toml -n 50",
         "reference clutch-r2.toml --points points.csv --out model.csv",
         "compare s.pcc -n 100",
